@@ -40,7 +40,7 @@ pub enum Exposure {
 }
 
 impl Exposure {
-    /// Largest exposure, and inverse of the smallest one: the range of [`expose`](crate::kernel::wrs::expose).
+    /// Largest exposure, and inverse of the smallest one: the range of [`expose`](crate::kernel::color::expose).
     const LIMIT: f32 = (1_u64 << 40) as f32;
 
     /// Rejects a ratio that is not above 0 and finite, and an exposure out of range.

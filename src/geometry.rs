@@ -4,7 +4,7 @@ use crate::camera::Projection;
 use crate::error::SettingsError;
 #[cfg(feature = "cpu")]
 use crate::image::Image;
-use crate::kernel::acuity;
+use crate::kernel::lens;
 use glam::{Vec2, Vec3, Vec4};
 use std::f32::consts::FRAC_PI_2;
 
@@ -221,7 +221,7 @@ impl ViewGeometry {
 
     /// Eccentricity: true visual angle in degrees between the rays through `px` and `gaze_px`.
     pub fn eccentricity_deg(&self, px: [f32; 2], gaze_px: [f32; 2]) -> f32 {
-        acuity::eccentricity_deg(self.ray(px).into(), self.ray(gaze_px).into())
+        lens::eccentricity_deg(self.ray(px).into(), self.ray(gaze_px).into())
     }
 
     /// Smallest rectangle that contains all pixels within `radius_deg` of the gaze: first pixel, and pixel after the

@@ -3,7 +3,7 @@
 use crate::context::ContextDesc;
 use crate::frame::{Exposure, FrameInputs, Reset};
 #[cfg(feature = "cpu")]
-use crate::kernel::acuity;
+use crate::kernel::lens;
 #[cfg(feature = "cpu")]
 use crate::kernel::reproject::ViewMotion;
 use crate::kernel::rng::{self, Purpose};
@@ -197,6 +197,6 @@ impl ViewUniforms {
     #[inline(always)]
     pub(crate) fn region_angle_deg(&self, ray: Vec3) -> f32 {
         let [x, y, z, _] = self.gaze_ray;
-        acuity::eccentricity_deg(ray, Vec3::new(x, y, z))
+        lens::eccentricity_deg(ray, Vec3::new(x, y, z))
     }
 }

@@ -7,15 +7,6 @@ const R_E_DEG: f32 = 22.14;
 const D_C0: f32 = 14804.6;
 const R_M_DEG: f32 = 41.03;
 
-fn eccentricity_deg(ray: vec3f, gaze: vec3f) -> f32 {
-    let cx = ray.y * gaze.z - ray.z * gaze.y;
-    let cy = ray.z * gaze.x - ray.x * gaze.z;
-    let cz = ray.x * gaze.y - ray.y * gaze.x;
-    let across = sqrt(cx * cx + cy * cy + cz * cz);
-    let along = ray.z * gaze.z + ray.x * gaze.x + ray.y * gaze.y;
-    return min(atan2_upper(across, along) * (180.0f / PI), 180.0);
-}
-
 // Eq. 3.
 fn cell_density(e_deg: f32) -> f32 {
     let q = 1.0 + e_deg * (1.0f / R_2_DEG);

@@ -1,7 +1,7 @@
 //#use stored_sample
-//#use smr
 //#use sparse_smr
-//#use taa
+//#use approx
+//#use color
 // Twin of src/kernel/antialias.rs, which explains the constants.
 
 const MOST_SAMPLES: f32 = 29.0;

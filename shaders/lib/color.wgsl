@@ -1,8 +1,11 @@
+//#use sanitize
 // Twin of src/kernel/color.rs.
 
 const LAB_EPSILON: f32 = 216.0f / 24389.0f;
 const LAB_SLOPE: f32 = 841.0f / 108.0f;
 const LAB_OFFSET: f32 = 16.0f / 116.0f;
+const DARK: f32 = 0.002;
+const ROUNDING: f32 = 5e-4;
 
 // Guess of the inverse root from the bits, then a polynomial.
 fn cbrt(x: f32) -> f32 {
@@ -82,4 +85,53 @@ fn delta_e94(reference: vec3f, stored: vec3f) -> f32 {
     let sc = 1.0 + 0.045 * c1;
     let sh = 1.0 + 0.015 * c1;
     return sqrt(d.x * d.x + (dc * dc) / (sc * sc) + dh2 / (sh * sh));
+}
+
+fn expose(stored_color: vec3f, ratio: f32) -> vec3f {
+    return clamp(stored_color * ratio, vec3f(-MAX_HALF), vec3f(MAX_HALF));
+}
+
+fn root_difference(x: vec3f, y: vec3f) -> f32 {
+    return distance_of_roots(roots(x), roots(y));
+}
+
+fn distance_of_roots(x: vec3f, y: vec3f) -> f32 {
+    let d = x - y;
+    let outer = 0.25 * (d.x + d.z);
+    let inner = 0.5 * d.y;
+    let luma = outer + inner;
+    let orange = 0.5 * (d.x - d.z);
+    let green = inner - outer;
+    let chroma = orange * orange + green * green;
+    return 100.0 * sqrt(luma * luma + 0.5 * chroma);
+}
+
+fn roots(c: vec3f) -> vec3f {
+    return past_roots(max(c, vec3f(0.0)));
+}
+
+fn past_roots(c: vec3f) -> vec3f {
+    return sqrt(c);
+}
+
+fn to_ycocg(c: vec3f) -> vec3f {
+    let r = roots(c);
+    let outer = 0.25 * (r.x + r.z);
+    let inner = 0.5 * r.y;
+    return vec3f(outer + inner, 0.5 * (r.x - r.z), inner - outer);
+}
+
+fn roots_of_ycocg(y: vec3f) -> vec3f {
+    let outer = y.x - y.z;
+    return max(vec3f(outer + y.y, y.x + y.z, outer - y.y), vec3f(0.0));
+}
+
+fn clip_to_box(history: vec3f, mean: vec3f, extent: vec3f) -> vec3f {
+    let d = history - mean;
+    let ratio = extent / max(abs(d), vec3f(1e-6));
+    let inside = min(min(ratio.x, ratio.y), ratio.z);
+    if inside < 1.0 {
+        return mean + d * inside;
+    }
+    return history;
 }

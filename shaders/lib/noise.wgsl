@@ -1,6 +1,8 @@
-//#use smr
 //#use pack
 //#use sanitize
+//#use approx
+//#use color
+//#use surface
 // Twin of src/kernel/noise.rs, which explains the constants.
 
 const NOISY_LEVELS: f32 = 3.0;

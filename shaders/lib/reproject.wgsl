@@ -12,6 +12,8 @@ const VERDICT_EMPTY: u32 = 4u;
 const VERDICT_DISOCCLUDED: u32 = 5u;
 const VERDICT_DISTRUSTED: u32 = 6u;
 const VERDICT_COUNT: u32 = 7u;
+const COHERENT_PX: f32 = 0.5;
+const COHERENT_SHARE: f32 = 0.1;
 
 // sRGB-encoded.
 fn verdict_color(verdict: u32) -> vec3f {
@@ -87,4 +89,9 @@ fn camera_vector(ray: vec2f, disparity: f32, motion: ViewMotion) -> vec2f {
 
 fn has_no_vector(given: vec2f, none: vec2f) -> bool {
     return !(is_finite(given.x) && is_finite(given.y)) || all(given == none);
+}
+
+fn moves_alike(own: vec2f, other: vec2f) -> bool {
+    let within = COHERENT_PX + COHERENT_SHARE * (abs(own.x) + abs(own.y));
+    return abs(other.x - own.x) <= within && abs(other.y - own.y) <= within;
 }

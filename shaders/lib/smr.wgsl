@@ -1,9 +1,9 @@
 //#use approx
 //#use surface
+//#use color
 // Twin of src/kernel/smr.rs, which explains the constants.
 
 const QUALITY_WIDTH: f32 = 0.1;
-const COARSER_WIDTH: f32 = 0.25;
 const GATE_FROM: f32 = 3.0;
 const GATE_WIDTH: f32 = 6.0;
 const RELIGHT: vec2f = vec2f(1.5, 0.5);
@@ -16,11 +16,8 @@ const ALIKE_CONTRAST: f32 = 0.5;
 const GAIN_LEAST: f32 = 0.2;
 const GAIN_MOST: f32 = 5.0;
 const LEAST_WORN: f32 = 0.5 / LOD_STEPS;
-const DARK: f32 = 0.002;
 const MIDDLE: f32 = 0.5;
 const LEAST_BRIGHTNESS: f32 = 0x1p-14;
-const COHERENT_PX: f32 = 0.5;
-const COHERENT_SHARE: f32 = 0.1;
 
 struct SmrParams {
     accumulate: f32,
@@ -31,15 +28,6 @@ struct SmrParams {
     noisy: bool,
 }
 
-fn smooth_step(low: f32, width: f32, x: f32) -> f32 {
-    let t = clamp((x - low) / width, 0.0, 1.0);
-    return (t * t) * (3.0 - 2.0 * t);
-}
-
-fn root_difference(x: vec3f, y: vec3f) -> f32 {
-    return distance_of_roots(roots(x), roots(y));
-}
-
 fn past_difference(x: vec3f, past: vec3f) -> f32 {
     return distance_of_roots(roots(x), past_roots(past));
 }
@@ -48,34 +36,10 @@ fn past_contrast(level: vec3f, next_level: vec3f) -> f32 {
     return distance_of_roots(past_roots(level), past_roots(next_level));
 }
 
-fn distance_of_roots(x: vec3f, y: vec3f) -> f32 {
-    let d = x - y;
-    let outer = 0.25 * (d.x + d.z);
-    let inner = 0.5 * d.y;
-    let luma = outer + inner;
-    let orange = 0.5 * (d.x - d.z);
-    let green = inner - outer;
-    let chroma = orange * orange + green * green;
-    return 100.0 * sqrt(luma * luma + 0.5 * chroma);
-}
-
-fn roots(c: vec3f) -> vec3f {
-    return past_roots(max(c, vec3f(0.0)));
-}
-
-fn past_roots(c: vec3f) -> vec3f {
-    return sqrt(c);
-}
-
 fn brightness_unit(compared: vec3f, matched: vec3f, exposure: f32) -> f32 {
     let now = max(max(compared.x, compared.y), compared.z);
     let then = max(max(matched.x, matched.y), matched.z);
     return max(max(now, then * exposure), LEAST_BRIGHTNESS) * (1.0f / MIDDLE);
-}
-
-fn moves_alike(own: vec2f, other: vec2f) -> bool {
-    let within = COHERENT_PX + COHERENT_SHARE * (abs(own.x) + abs(own.y));
-    return abs(other.x - own.x) <= within && abs(other.y - own.y) <= within;
 }
 
 struct ReuseWeight {

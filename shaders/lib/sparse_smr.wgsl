@@ -1,8 +1,8 @@
 //#use color
 //#use depth
 //#use stored_sample
-//#use smr
 //#use noise
+//#use approx
 // Twin of src/kernel/sparse_smr.rs, which documents the functions.
 
 const LIGHT_RELATIVE: f32 = 0.1;

@@ -6,6 +6,7 @@ const EMPTY_SURFACE: vec2u = vec2u(0u, 0xffff0000u);
 const MAX_FLOAT14: f32 = 65472.0;
 const LOD_STEPS: f32 = 7.0;
 const MAX_LOD: f32 = 62.0 * (1.0 / LOD_STEPS);
+const COARSER_WIDTH: f32 = 0.25;
 
 // A negative `lod` marks an empty texel.
 struct Surface {

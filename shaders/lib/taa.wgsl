@@ -1,39 +1,16 @@
-//#use smr
+//#use color
 // Twin of src/kernel/taa.rs, which explains the constants.
 
 const LIMIT: f32 = 16.0;
 const SETTLED: f32 = 2.0;
 const JITTER: f32 = 1.0 / 9.0;
-const ROUNDING: f32 = 5e-4;
 const SPREAD: f32 = 0.6;
 const BOX_SIGMAS: vec2f = vec2f(2.0, 5.0);
 const MAX_ROOT: f32 = 256.0;
 const NO_CONFIDENCE_LOD: f32 = 8.0;
 
-fn to_ycocg(c: vec3f) -> vec3f {
-    let r = roots(c);
-    let outer = 0.25 * (r.x + r.z);
-    let inner = 0.5 * r.y;
-    return vec3f(outer + inner, 0.5 * (r.x - r.z), inner - outer);
-}
-
 fn root_luma(c: vec3f) -> f32 {
     return min(to_ycocg(c).x, MAX_ROOT);
-}
-
-fn roots_of_ycocg(y: vec3f) -> vec3f {
-    let outer = y.x - y.z;
-    return max(vec3f(outer + y.y, y.x + y.z, outer - y.y), vec3f(0.0));
-}
-
-fn clip_to_box(history: vec3f, mean: vec3f, extent: vec3f) -> vec3f {
-    let d = history - mean;
-    let ratio = extent / max(abs(d), vec3f(1e-6));
-    let inside = min(min(ratio.x, ratio.y), ratio.z);
-    if inside < 1.0 {
-        return mean + d * inside;
-    }
-    return history;
 }
 
 fn confidence_of(lod: f32) -> f32 {

@@ -106,10 +106,6 @@ fn scale_by_trust(past: Past, history_trust: f32, sampler_code: u32) -> Past {
     return Past(past.color, weight(past.w_sum * share), log_key);
 }
 
-fn expose(stored_color: vec3f, ratio: f32) -> vec3f {
-    return clamp(stored_color * ratio, vec3f(-MAX_HALF), vec3f(MAX_HALF));
-}
-
 fn luma_root(c: vec3f) -> f32 {
     return sqrt(max(luma(c), 0.0));
 }

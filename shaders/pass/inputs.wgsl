@@ -1,4 +1,3 @@
-//#use acuity
 //#use depth
 //#use lens
 //#use noise

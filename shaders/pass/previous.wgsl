@@ -1,6 +1,6 @@
 //#use inputs
-//#use smr
 //#use past_frame
+//#use reproject
 // Previous position of a pixel's surface; shared by the methods that store surfaces. CPU twin: src/cpu/inputs.rs.
 
 // All fields but the verdict are valid only if that is VERDICT_VALID or VERDICT_DISOCCLUDED.

@@ -2,7 +2,7 @@
 //#use previous
 //#use resample
 //#use sparse_smr
-//#use wrs
+//#use color
 // Stored samples around the previous position of a pixel's surface. CPU twin: src/cpu/sparse_pass/sparse_history.rs.
 
 // Whether frames are jittered and history stores means of samples.

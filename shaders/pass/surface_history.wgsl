@@ -1,6 +1,6 @@
 //#use previous
 //#use resample
-//#use wrs
+//#use color
 // Stored history of a pixel's surface; shared by the methods that store surfaces (smr, taa). CPU twin:
 // src/cpu/surface_history.rs.
 

@@ -1,4 +1,4 @@
-//#use acuity
+//#use lens
 // Uniforms of a view; shared by methods and simulators.
 
 // src/uniforms.rs: ViewUniforms, which documents the fields

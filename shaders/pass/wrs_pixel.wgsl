@@ -6,6 +6,7 @@
 //#use resample
 //#use rng
 //#use wrs
+//#use acuity
 // Weighted reservoirs in one pass: sanitize, reproject, reject, expose, gate, bias, combine, store and output. CPU
 // twin: src/cpu/wrs_pass.rs, which lists the reads and writes.
 

@@ -8,6 +8,7 @@ mod doctor_pass;
 mod explain;
 mod fill;
 pub(crate) mod history;
+mod input_notes;
 mod inputs;
 mod mip_chain;
 mod none_pass;
@@ -308,7 +309,7 @@ impl CpuAfterimage {
         let (given, frame, history) = (frame, &whole, &mut self.history);
         if let Some(pixel) = &mut noted {
             pixel.notes.clear();
-            explain::note_inputs(&self.desc, given, frame, history, quads, pixel);
+            input_notes::note_inputs(&self.desc, given, frame, history, quads, pixel);
         }
         let pass = Pass { desc: &self.desc, history, frame, quads, output, alpha, traces, noted: noted.as_deref_mut() };
         let stats = match self.desc.settings.algorithm() {

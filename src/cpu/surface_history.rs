@@ -5,6 +5,7 @@ use super::explain::note_taps;
 use super::history::PastSurfaces;
 use super::inputs::{Inputs, Previous};
 use super::sparse_pass::Quads;
+use crate::kernel::color::expose;
 use crate::kernel::foveate::{block_sample, block_sample_level, split};
 use crate::kernel::noise::{Noise, expose_noise, unpack_noise};
 use crate::kernel::reproject::Verdict;
@@ -15,7 +16,6 @@ use crate::kernel::resample::{
 use crate::kernel::smr::mip_bilinear;
 use crate::kernel::surface::{Surface, mip_texel, unpack_surface};
 use crate::kernel::taa::root_luma;
-use crate::kernel::wrs::expose;
 use crate::notes::{NoteStage, Notes};
 use glam::Vec3;
 

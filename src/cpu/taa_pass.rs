@@ -7,6 +7,7 @@
 use super::pixel::Pixel;
 use super::surface_history::{Source, SurfaceHistory};
 use super::surface_pass::SurfaceMethod;
+use crate::kernel::color::to_ycocg;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::reproject::Verdict;
 use crate::kernel::sanitize::MAX_HALF;
@@ -87,7 +88,7 @@ fn neighbourhood(view: &SurfaceHistory<'_>, px: [u32; 2], own: Vec3, past: Optio
         let offset = [tap % 3 - 1, tap / 3 - 1];
         let [x, y] = [0, 1].map(|i| (px[i] as i32 + offset[i]).clamp(0, view.inputs.size[i] as i32 - 1) as u32);
         let (color, usable) = view.inputs.candidate(x, y);
-        let v = taa::to_ycocg(if usable { color } else { own });
+        let v = to_ycocg(if usable { color } else { own });
         around.sum += v;
         around.squares += v * v;
         if let Some(source) = past {

@@ -287,14 +287,14 @@ impl ViewPass<'_> {
         if inputs.tests_depth() && !inputs.same_surface(x, y, disparity, expected, stored.disparity) {
             return Err(Verdict::Disoccluded);
         }
-        past.color = wrs::expose(past.color, inputs.exposure);
+        past.color = color::expose(past.color, inputs.exposure);
         if self.params.sampler == SamplerCode::AChaoMean {
             let previous_px = [x as f32 + motion[0], y as f32 + motion[1]];
             let mean = self.resampled(previous_px, expected, stored.color, notes);
-            past.color = wrs::unspread(candidate, past.color, wrs::expose(mean, inputs.exposure));
+            past.color = wrs::unspread(candidate, past.color, color::expose(mean, inputs.exposure));
         }
         let stored_reference = self.past.references.get(at).copied().map_or(Reference::NONE, wrs::unpack_reference);
-        let reference = Reference { color: wrs::expose(stored_reference.color, inputs.exposure), ..stored_reference };
+        let reference = Reference { color: color::expose(stored_reference.color, inputs.exposure), ..stored_reference };
         notes.note(NoteStage::History, "color", past.color, "linear light");
         notes.note(NoteStage::History, "weight sum", past.w_sum, "");
         notes.note(NoteStage::History, "age", stored.age as f32, "frames");

@@ -6,11 +6,10 @@
 //! resampled. Means of moving history contain few samples: the pixel's area lies elsewhere on the surface in each
 //! frame, so that a long mean would blur.
 
-use super::color::luma;
-use super::smr::{root_difference, roots, smooth_step};
+use super::approx::smooth_step;
+use super::color::{ROUNDING, clip_to_box, luma, root_difference, roots, to_ycocg};
 use super::sparse_smr::{CONTRAST_ERROR, MOVED_ERROR, ObservedAround, Reconstructed, Reconstruction, relit};
 use super::stored_sample::{FARTHEST_PX, StoredSample};
-use super::taa::{ROUNDING, clip_to_box, to_ycocg};
 use glam::{Vec2, Vec3};
 
 /// Largest number of samples in a mean: one frame's sample has a weight of at least 1/30. A larger limit flickers less,

@@ -112,3 +112,10 @@ pub fn sin_cos_turns(x: f32) -> [f32; 2] {
         _ => [-c, s],
     }
 }
+
+/// Smooth step (3t^2 - 2t^3): 0 up to `from`, 1 from `from + width` on.
+#[inline(always)]
+pub fn smooth_step(from: f32, width: f32, x: f32) -> f32 {
+    let t = ((x - from) / width).clamp(0.0, 1.0);
+    (t * t) * (3.0 - 2.0 * t)
+}

@@ -1,5 +1,6 @@
 //! Color: sRGB transfer, CIE Lab and the Delta E 94 difference, from linear Rec. 709.
 
+use super::sanitize::MAX_HALF;
 use glam::Vec3;
 
 /// Below this, Lab's f(t) is a line (CIE 15: (6/29)^3).
@@ -7,6 +8,11 @@ const LAB_EPSILON: f32 = 216.0 / 24389.0;
 /// Slope of that line (CIE 15: (29/6)^2 / 3), and its value at 0.
 const LAB_SLOPE: f32 = 841.0 / 108.0;
 const LAB_OFFSET: f32 = 16.0 / 116.0;
+/// Added to linear values to keep ratios and slopes of dark colors finite.
+pub(super) const DARK: f32 = 0.002;
+/// Rounding of the square roots of stored colors: 9 bits of mantissa. It is tolerated, because samples without
+/// variance, as in the chroma of a grey picture, would otherwise reject history.
+pub const ROUNDING: f32 = 5e-4;
 
 /// Cube root; negative for negative `x`. Error at most 2 ulp for |x| in \[1e-30, 1e30\]; exact at 0 and +-1.
 ///
@@ -109,4 +115,70 @@ pub fn delta_e94(reference: Vec3, sample: Vec3) -> f32 {
     let sc = 1.0 + 0.045 * c1;
     let sh = 1.0 + 0.015 * c1;
     (d.x * d.x + (dc * dc) / (sc * sc) + dh2 / (sh * sh)).sqrt()
+}
+
+/// Stored color scaled to this frame's exposure: times `ratio`, clamped to halves. `ratio` is limited to 2^-40 to 2^40:
+/// beyond this range every half overflows or underflows, and within it no float product does.
+#[inline]
+pub fn expose(stored: Vec3, ratio: f32) -> Vec3 {
+    (stored * ratio).clamp(Vec3::splat(-MAX_HALF), Vec3::splat(MAX_HALF))
+}
+
+/// Difference of two linear colors, 100 between black and white: Euclidean distance in YCoCg of the square roots,
+/// squared chroma at half weight. Exactly 0 for equal colors. Cheaper than Delta E, which needs cube roots.
+#[inline(always)]
+pub fn root_difference(x: Vec3, y: Vec3) -> f32 {
+    distance_of_roots(roots(x), roots(y))
+}
+
+/// [`root_difference`] from the square roots of two colors.
+#[inline(always)]
+pub fn distance_of_roots(x: Vec3, y: Vec3) -> f32 {
+    let d = x - y;
+    let outer = 0.25 * (d.x + d.z);
+    let inner = 0.5 * d.y;
+    let luma = outer + inner;
+    let orange = 0.5 * (d.x - d.z);
+    let green = inner - outer;
+    let chroma = orange * orange + green * green;
+    100.0 * (luma * luma + 0.5 * chroma).sqrt()
+}
+
+/// Square roots of a color's channels; 0 for negative ones.
+#[inline(always)]
+pub fn roots(c: Vec3) -> Vec3 {
+    past_roots(c.max(Vec3::ZERO))
+}
+
+/// Square roots of the channels of history, which is at least 0.
+#[inline(always)]
+pub fn past_roots(c: Vec3) -> Vec3 {
+    Vec3::new(c.x.sqrt(), c.y.sqrt(), c.z.sqrt())
+}
+
+/// YCoCg of the square roots of a linear color.
+#[inline]
+pub fn to_ycocg(c: Vec3) -> Vec3 {
+    let r = roots(c);
+    let outer = 0.25 * (r.x + r.z);
+    let inner = 0.5 * r.y;
+    Vec3::new(outer + inner, 0.5 * (r.x - r.z), inner - outer)
+}
+
+/// Square roots of RGB from YCoCg, at least 0.
+#[inline]
+pub fn roots_of_ycocg(y: Vec3) -> Vec3 {
+    let outer = y.x - y.z;
+    Vec3::new((outer + y.y).max(0.0), (y.x + y.z).max(0.0), (outer - y.y).max(0.0))
+}
+
+/// Clips `history` along the line to `mean` to the box of half width `extent` around `mean`.
+#[inline]
+pub fn clip_to_box(history: Vec3, mean: Vec3, extent: Vec3) -> Vec3 {
+    let d = history - mean;
+    let x = extent.x / d.x.abs().max(1e-6);
+    let y = extent.y / d.y.abs().max(1e-6);
+    let z = extent.z / d.z.abs().max(1e-6);
+    let inside = x.min(y).min(z);
+    if inside < 1.0 { mean + d * inside } else { history }
 }

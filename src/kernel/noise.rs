@@ -4,9 +4,11 @@
 //! History is weighted by numbers of samples alone. Weighting by the samples' own variance would favour pixels whose
 //! samples all missed a lamp (dark, and of low variance), and the mean would be biased towards black.
 
+use super::approx::smooth_step;
+use super::color::DARK;
 use super::pack::{half_bits, half_value};
 use super::sanitize::MAX_HALF;
-use super::smr::{COARSER_WIDTH, DARK, smooth_step};
+use super::surface::COARSER_WIDTH;
 use glam::{Vec3, Vec4};
 
 /// Levels of detail beyond the candidate's own at which noisy candidates are compared: means of 8x8 samples have an
@@ -114,7 +116,7 @@ pub fn pooled_variance(history: Noise, candidate: Noise) -> f32 {
     (history.samples * history.variance + candidate.samples * candidate.variance) / all
 }
 
-/// Derivative of [`root_difference`](super::smr::root_difference) by linear luma, at a luma: that of 100 times its
+/// Derivative of [`root_difference`](super::color::root_difference) by linear luma, at a luma: that of 100 times its
 /// square root, limited for dark colors.
 #[inline]
 pub fn root_slope(luma: f32) -> f32 {
@@ -122,7 +124,7 @@ pub fn root_slope(luma: f32) -> f32 {
 }
 
 /// Largest difference of the compared means of candidates and of history that noise alone explains: three standard
-/// deviations at a luma, in units of [`root_difference`](super::smr::root_difference). `luma` is in units of
+/// deviations at a luma, in units of [`root_difference`](super::color::root_difference). `luma` is in units of
 /// [`brightness_unit`](super::smr::brightness_unit), whose inverse is `inverse_unit`.
 #[inline]
 pub fn noise_difference(history: Noise, candidate: Noise, luma: f32, inverse_unit: f32) -> f32 {
@@ -156,14 +158,14 @@ pub fn discount_coarser(history: Noise, candidate: Noise, levels: f32) -> Noise 
 }
 
 /// Largest difference of a candidate and a sample of equal noise that noise alone explains: three standard deviations
-/// at a luma, in units of [`root_difference`](super::smr::root_difference).
+/// at a luma, in units of [`root_difference`](super::color::root_difference).
 #[inline]
 pub fn sample_difference(candidate: Noise, luma: f32) -> f32 {
     root_slope(luma) * (candidate.variance * ((2.0 * SIGMAS * SIGMAS) / candidate.samples)).sqrt()
 }
 
 /// Expected difference, due to noise, of a sample and of history at its pixel: the standard deviation at a luma, in
-/// units of [`root_difference`](super::smr::root_difference).
+/// units of [`root_difference`](super::color::root_difference).
 #[inline]
 pub fn expected_noise(history: Noise, candidate: Noise, luma: f32) -> f32 {
     let inverse_samples = 1.0 / candidate.samples + 1.0 / history.samples.max(1.0);
@@ -172,7 +174,7 @@ pub fn expected_noise(history: Noise, candidate: Noise, luma: f32) -> f32 {
 
 /// Reduction of the squared error, due to noise, of history at a luma that one more sample is expected to bring: of its
 /// variance over n samples, less that over n + 1; in squared units of
-/// [`root_difference`](super::smr::root_difference).
+/// [`root_difference`](super::color::root_difference).
 #[inline]
 pub fn noise_need(history: Noise, luma: f32) -> f32 {
     let samples = history.samples.max(1.0);

@@ -28,7 +28,7 @@ pub const NOWHERE: u32 = 0x88;
 pub const WHOLE: u32 = 15;
 
 /// Need of a quad without history, if it comes first in its block in this frame; in squared units of
-/// [`root_difference`](super::smr::root_difference).
+/// [`root_difference`](super::color::root_difference).
 const NO_HISTORY_NEED: f32 = 60.0;
 /// Share of that need for the other quads of the block.
 const LATER_SHARE: f32 = 0.25;
@@ -147,7 +147,7 @@ pub fn no_history_need(x: u32, y: u32, offset: [u32; 2]) -> f32 {
 
 /// Reduction of a pixel's squared error that a sample of its own is expected to bring, from history of level of detail
 /// `lod`, of `samples` samples and with the local contrast `contrast`. In squared units of
-/// [`root_difference`](super::smr::root_difference).
+/// [`root_difference`](super::color::root_difference).
 #[inline]
 pub fn need(lod: f32, samples: f32, contrast: f32) -> f32 {
     let contrast = contrast.min(MOST_CONTRAST);

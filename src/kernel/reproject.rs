@@ -5,6 +5,8 @@ use glam::{Vec2, Vec3, Vec4};
 
 /// Largest valid component of a motion vector, in pixels.
 pub const MAX_MOTION_PX: f32 = 65536.0;
+/// Tolerance of motion coherence: in pixels, and as a share of the vector's length.
+const COHERENT: [f32; 2] = [0.5, 0.1];
 
 /// Verdict on a pixel's history: valid, or the reason why it is missing or rejected.
 ///
@@ -146,4 +148,13 @@ pub fn camera_vector(ray: Vec2, disparity: f32, motion: ViewMotion) -> Vec2 {
 #[inline]
 pub fn has_no_vector(given: Vec2, none: Vec2) -> bool {
     !(is_finite(given.x) && is_finite(given.y)) || given == none
+}
+
+/// Whether two motion vectors, in pixels, can belong to one surface. A pixel that moves like neither neighbour in its
+/// 2x2 block lies on a moving silhouette, where renderers mix the vectors of both sides: such a vector points at
+/// neither surface.
+#[inline]
+pub fn moves_alike(own: [f32; 2], other: [f32; 2]) -> bool {
+    let within = COHERENT[0] + COHERENT[1] * (own[0].abs() + own[1].abs());
+    (other[0] - own[0]).abs() <= within && (other[1] - own[1]).abs() <= within
 }

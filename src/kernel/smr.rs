@@ -1,21 +1,20 @@
 //! One pixel of the scale-matched reservoir (smr): the sharpest sample of a surface point is shown as long as it
 //! explains the candidate when low-passed to the candidate's level of detail. `docs/method.md` derives the equations.
 
-use super::approx;
-use super::surface::LOD_STEPS;
+use super::approx::{self, smooth_step};
+use super::color::{DARK, distance_of_roots, past_roots, roots};
+use super::surface::{COARSER_WIDTH, LOD_STEPS};
 use crate::notes::{NoNotes, NoteStage, Notes};
 use glam::{Vec3, Vec4};
 use std::f32::consts::LOG2_E;
 
 /// Levels of detail by which history must be finer than the candidate to replace it fully.
 pub const QUALITY_WIDTH: f32 = 0.1;
-/// Levels of detail by which history may be coarser than the candidate and still be accumulated.
-pub(super) const COARSER_WIDTH: f32 = 0.25;
 /// Gate: difference at which the fit starts to fall from 1 (contrast is added to it), and width over which it falls to
-/// 0, in units of [`root_difference`].
+/// 0, in units of [`root_difference`](super::color::root_difference).
 const GATE: [f32; 2] = [3.0, 6.0];
-/// Difference at which relighting starts, in units of [`root_difference`], and the factor on contrast that is added to
-/// it.
+/// Difference at which relighting starts, in units of [`root_difference`](super::color::root_difference), and the
+/// factor on contrast that is added to it.
 const RELIGHT: [f32; 2] = [1.5, 0.5];
 /// [`RELIGHT`] for point-sampled blocks: higher, because their aliasing must not be mistaken for a change of light.
 const RELIGHT_BLOCKS: [f32; 2] = [8.0, 0.5];
@@ -36,16 +35,12 @@ const GAIN: [f32; 2] = [0.2, 5.0];
 /// Least levels of detail that a gain costs: half a stored step, which storage rounds up. A smaller gain would cost
 /// nothing, and is not used.
 const LEAST_WORN: f32 = 0.5 / LOD_STEPS;
-/// Added to linear values to keep ratios and slopes of dark colors finite.
-pub(super) const DARK: f32 = 0.002;
 /// Largest channel of compared colors in units of [`brightness_unit`]. At this brightness the units are those of the
 /// frame, for which the gate's constants were chosen.
 const MIDDLE: f32 = 0.5;
 /// Least brightness that [`brightness_unit`] follows: the smallest normal half. Darker colors are stored in steps that
 /// are large in comparison.
 const LEAST_BRIGHTNESS: f32 = 1.0 / 16384.0;
-/// Tolerance of motion coherence: in pixels, and as a share of the vector's length.
-const COHERENT: [f32; 2] = [0.5, 0.1];
 
 /// Parameters of smr, from `Settings`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,55 +60,16 @@ pub struct SmrParams {
     pub noisy: bool,
 }
 
-/// Smooth step (3t^2 - 2t^3): 0 up to `from`, 1 from `from + width` on.
-#[inline(always)]
-pub fn smooth_step(from: f32, width: f32, x: f32) -> f32 {
-    let t = ((x - from) / width).clamp(0.0, 1.0);
-    (t * t) * (3.0 - 2.0 * t)
-}
-
-/// Difference of two linear colors, 100 between black and white: Euclidean distance in YCoCg of the square roots,
-/// squared chroma at half weight. Exactly 0 for equal colors. Cheaper than Delta E, which needs cube roots.
-#[inline(always)]
-pub fn root_difference(x: Vec3, y: Vec3) -> f32 {
-    distance_of_roots(roots(x), roots(y))
-}
-
-/// As [`root_difference`], of a color and of history, which is at least 0.
+/// As [`root_difference`](super::color::root_difference), of a color and of history, which is at least 0.
 #[inline(always)]
 pub fn past_difference(x: Vec3, past: Vec3) -> f32 {
     distance_of_roots(roots(x), past_roots(past))
 }
 
-/// Contrast of history: [`root_difference`] of two of its levels.
+/// Contrast of history: [`root_difference`](super::color::root_difference) of two of its levels.
 #[inline(always)]
 pub fn past_contrast(level: Vec3, next_level: Vec3) -> f32 {
     distance_of_roots(past_roots(level), past_roots(next_level))
-}
-
-/// [`root_difference`] from the square roots of two colors.
-#[inline(always)]
-pub fn distance_of_roots(x: Vec3, y: Vec3) -> f32 {
-    let d = x - y;
-    let outer = 0.25 * (d.x + d.z);
-    let inner = 0.5 * d.y;
-    let luma = outer + inner;
-    let orange = 0.5 * (d.x - d.z);
-    let green = inner - outer;
-    let chroma = orange * orange + green * green;
-    100.0 * (luma * luma + 0.5 * chroma).sqrt()
-}
-
-/// Square roots of a color's channels; 0 for negative ones.
-#[inline(always)]
-pub fn roots(c: Vec3) -> Vec3 {
-    past_roots(c.max(Vec3::ZERO))
-}
-
-/// Square roots of the channels of history, which is at least 0.
-#[inline(always)]
-pub fn past_roots(c: Vec3) -> Vec3 {
-    Vec3::new(c.x.sqrt(), c.y.sqrt(), c.z.sqrt())
 }
 
 /// Unit of the colors that the gate compares, linear: twice the largest channel of candidate and history. Colors that
@@ -123,15 +79,6 @@ pub fn past_roots(c: Vec3) -> Vec3 {
 pub fn brightness_unit(compared: Vec3, matched: Vec3, exposure: f32) -> f32 {
     let largest = compared.max_element().max(matched.max_element() * exposure);
     largest.max(LEAST_BRIGHTNESS) * (1.0 / MIDDLE)
-}
-
-/// Whether two motion vectors, in pixels, can belong to one surface. A pixel that moves like neither neighbour in its
-/// 2x2 block lies on a moving silhouette, where renderers mix the vectors of both sides: such a vector points at
-/// neither surface.
-#[inline]
-pub fn moves_alike(own: [f32; 2], other: [f32; 2]) -> bool {
-    let within = COHERENT[0] + COHERENT[1] * (own[0].abs() + own[1].abs());
-    (other[0] - own[0]).abs() <= within && (other[1] - own[1]).abs() <= within
 }
 
 /// Weight of history, without regard to its fit.
@@ -173,8 +120,8 @@ pub fn strongest_gain(gains: Vec3) -> f32 {
     if least * most < 1.0 { least } else { most }
 }
 
-/// Difference at which relighting starts, in units of [`root_difference`]. `noise`: difference that noise alone can
-/// cause.
+/// Difference at which relighting starts, in units of [`root_difference`](super::color::root_difference). `noise`:
+/// difference that noise alone can cause.
 #[inline]
 pub fn relight_from(contrast: f32, blocks: bool, noise: f32) -> f32 {
     let relight = if blocks { RELIGHT_BLOCKS } else { RELIGHT };
@@ -234,8 +181,8 @@ pub struct Evidence {
     pub predicted: Vec3,
     /// Confidence in history, in \[0, 1\]: the frame's trust mask.
     pub trust: f32,
-    /// Difference of `compared` and `matched` that noise alone can cause, in units of [`root_difference`]; 0 for
-    /// candidates without noise.
+    /// Difference of `compared` and `matched` that noise alone can cause, in units of
+    /// [`root_difference`](super::color::root_difference); 0 for candidates without noise.
     pub noise: f32,
     /// Noise confidence of history and of the candidate, in \[0, 1\]; 1 without noise.
     pub confidence: [f32; 2],
@@ -332,7 +279,7 @@ pub(crate) fn decide_noted(e: &Evidence, p: &SmrParams, notes: &mut impl Notes) 
     Matched { color, lod, share, fit }
 }
 
-/// Unit of [`root_difference`] in notes.
+/// Unit of [`root_difference`](super::color::root_difference) in notes.
 const OF_DIFFERENCE: &str = "100 from black to white";
 
 impl Evidence {

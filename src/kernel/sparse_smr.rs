@@ -6,12 +6,12 @@
 //! history after it, are estimated from each shaded quad and the eight around it ([`relight`]). Then each pixel
 //! interpolates gain and fit, and blends its own history with the interpolated samples ([`reconstruct`]).
 
-use super::approx;
-use super::color::luma;
+use super::approx::{self, smooth_step};
+use super::color::{DARK, luma, root_difference};
 use super::noise::{Noise, history_share, noise_after, noise_confidence, noise_visibility};
 use super::pack::disparity_code;
-use super::smr::{COARSER_WIDTH, DARK, root_difference, smooth_step};
 use super::stored_sample::{StoredSample, pack_color, unpack_color};
+use super::surface::COARSER_WIDTH;
 use glam::{Vec2, Vec3};
 use std::f32::consts::LOG2_E;
 

@@ -29,6 +29,8 @@ pub const LOD_STEPS: f32 = 7.0;
 
 /// Largest stored level of detail.
 pub const MAX_LOD: f32 = 62.0 * (1.0 / LOD_STEPS);
+/// Levels of detail by which history may be coarser than the candidate and still be accumulated.
+pub(super) const COARSER_WIDTH: f32 = 0.25;
 
 /// Stored sample of a surface point.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 //! color distribution of the candidate's neighbourhood (Salvi 2016, "An excursion in temporal supersampling"; Karis
 //! 2014). Confidence is the number of samples that history counts for; resampling and bias limit it.
 
-use super::smr::roots;
+use super::color::{ROUNDING, clip_to_box, roots, roots_of_ycocg, to_ycocg};
 use crate::notes::{NoNotes, NoteStage, Notes};
 use glam::Vec3;
 
@@ -17,9 +17,6 @@ pub const SETTLED: f32 = 2.0;
 /// about a third of their deviation. A larger value follows changes of light later; a smaller one mistakes jitter for a
 /// change of light.
 const JITTER: f32 = 1.0 / 9.0;
-/// Rounding of the square roots of stored colors: 9 bits of mantissa. It is tolerated, because samples without
-/// variance, as in the chroma of a grey picture, would otherwise reject history.
-pub const ROUNDING: f32 = 5e-4;
 /// Inverse confidence of history midway between texels: each resampling blurs, and a candidate aliases.
 pub const SPREAD: f32 = 0.6;
 /// Half width of the clipping box in standard deviations, around history that moves and around settled history. A
@@ -33,38 +30,11 @@ const MAX_ROOT: f32 = 256.0;
 /// where history is enlarged.
 const NO_CONFIDENCE_LOD: f32 = 8.0;
 
-/// YCoCg of the square roots of a linear color.
-#[inline]
-pub fn to_ycocg(c: Vec3) -> Vec3 {
-    let r = roots(c);
-    let outer = 0.25 * (r.x + r.z);
-    let inner = 0.5 * r.y;
-    Vec3::new(outer + inner, 0.5 * (r.x - r.z), inner - outer)
-}
-
 /// Luma of the square roots of a linear color: Y of [`to_ycocg`], at most that of the largest half.
 #[inline]
 pub fn root_luma(c: Vec3) -> f32 {
     // The limit keeps compilers from merging the sum with others.
     to_ycocg(c).x.min(MAX_ROOT)
-}
-
-/// Square roots of RGB from YCoCg, at least 0.
-#[inline]
-pub fn roots_of_ycocg(y: Vec3) -> Vec3 {
-    let outer = y.x - y.z;
-    Vec3::new((outer + y.y).max(0.0), (y.x + y.z).max(0.0), (outer - y.y).max(0.0))
-}
-
-/// Clips `history` along the line to `mean` to the box of half width `extent` around `mean`.
-#[inline]
-pub fn clip_to_box(history: Vec3, mean: Vec3, extent: Vec3) -> Vec3 {
-    let d = history - mean;
-    let x = extent.x / d.x.abs().max(1e-6);
-    let y = extent.y / d.y.abs().max(1e-6);
-    let z = extent.z / d.z.abs().max(1e-6);
-    let inside = x.min(y).min(z);
-    if inside < 1.0 { mean + d * inside } else { history }
 }
 
 /// Confidence of a stored level of detail, in samples at the pixel.

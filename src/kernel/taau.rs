@@ -3,8 +3,8 @@
 //! samples around. The structure is that of FidelityFX Super Resolution 2 (AMD 2022, `ffx_fsr2_upsample.h`,
 //! `ffx_fsr2_accumulate.h`), without locks, reactive masks and dilated motion vectors.
 
-use super::smr::roots;
-use super::taa::{ROUNDING, box_sigmas, clip_to_box, roots_of_ycocg, settled, to_ycocg};
+use super::color::{ROUNDING, clip_to_box, roots, roots_of_ycocg, to_ycocg};
+use super::taa::{box_sigmas, settled};
 use crate::notes::{NoNotes, NoteStage, Notes};
 use glam::{Vec2, Vec3};
 

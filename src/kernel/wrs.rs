@@ -190,13 +190,6 @@ pub fn scale_by_trust(past: Past, trust: f32, sampler: SamplerCode) -> Past {
     Past { color: past.color, w_sum: sanitize::weight(past.w_sum * share), log_key }
 }
 
-/// Stored color scaled to this frame's exposure: times `ratio`, clamped to halves. `ratio` is limited to 2^-40 to 2^40:
-/// beyond this range every half overflows or underflows, and within it no float product does.
-#[inline]
-pub fn expose(stored: Vec3, ratio: f32) -> Vec3 {
-    (stored * ratio).clamp(Vec3::splat(-MAX_HALF), Vec3::splat(MAX_HALF))
-}
-
 /// Square root of a color's luma; 0 for negative ones.
 #[inline]
 pub fn luma_root(c: Vec3) -> f32 {

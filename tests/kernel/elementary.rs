@@ -1,6 +1,6 @@
 //! Elementary functions, sRGB and acuity: f32 kernels against f64, hard cases H17, H18 and H61-H65.
 
-use afterimage::kernel::{acuity, approx, color};
+use afterimage::kernel::{acuity, approx, color, lens};
 use afterimage_testing::holds;
 use approx_crate::assert_abs_diff_eq;
 use glam::DVec3;
@@ -106,7 +106,7 @@ fn h61_eccentricity_is_exact_where_acos_reads_0() {
             let (ray32, gaze32) = (ray.as_vec3() * 3.0, gaze.as_vec3() * 0.5);
             let (r, g) = (ray32.as_dvec3(), gaze32.as_dvec3());
             let exact = r.cross(g).length().atan2(r.dot(g));
-            let got = f64::from(acuity::eccentricity_deg(ray32, gaze32)).to_radians();
+            let got = f64::from(lens::eccentricity_deg(ray32, gaze32)).to_radians();
             worst = worst.max((got - exact).abs());
             let by_acos = f64::from(ray32.normalize().dot(gaze32.normalize()).clamp(-1.0, 1.0).acos());
             worst_acos = worst_acos.max((by_acos - exact).abs());

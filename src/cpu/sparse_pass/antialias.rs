@@ -7,8 +7,8 @@ use crate::kernel::antialias::{
     Averaged, MOST_DIFFERENCE, Mean, Near, add_near, average, byte_draws, centred_change, clip, clipped, is_edge,
     is_silhouette, is_thin, kept_samples, move_together, stands_before, stored_lod, surrounds_centre,
 };
+use crate::kernel::color::root_difference;
 use crate::kernel::rng;
-use crate::kernel::smr::root_difference;
 use crate::kernel::sparse_smr::{Reconstruction, relit};
 use crate::kernel::stored_sample::{StoredSample, pack_color_by, pack_stored};
 use crate::notes::{NoteStage, Notes};

@@ -2,7 +2,7 @@
 
 use super::view::View;
 use crate::kernel::antialias::scattered_error;
-use crate::kernel::smr::root_difference;
+use crate::kernel::color::root_difference;
 use crate::kernel::sparse_smr::{
     Observation, ObservedAround, RELIT_ERRORS, add_observation, errors_left, mean_error, relight, vote,
 };

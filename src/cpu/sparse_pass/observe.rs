@@ -4,9 +4,9 @@ use super::sparse_history::{Found, has_moved};
 use super::view::View;
 use crate::kernel::antialias::{Mean, expected_mean_error};
 use crate::kernel::color::luma;
+use crate::kernel::color::root_difference;
 use crate::kernel::noise::expected_noise;
 use crate::kernel::pack::{half_bits, half_value};
-use crate::kernel::smr::root_difference;
 use crate::kernel::sparse_smr::{
     Observation, expected_error, known_confidence, known_deviation, lod_confidence, noisy_lod_confidence, pack_known,
 };

@@ -11,7 +11,9 @@ use crate::foveation::Foveation;
 use crate::frame::Reset;
 use crate::image::Image;
 use crate::kernel::antialias::mean_of;
+use crate::kernel::color::expose;
 use crate::kernel::color::luma;
+use crate::kernel::color::root_difference;
 use crate::kernel::noise::{Noise, NoiseSum, add_noise, mean_noise, noise_need};
 use crate::kernel::quads::{
     ENOUGH_SAMPLES, IN_FOVEA, IN_MIDDLE, IN_PERIPHERY, KEYS, MOST_PATHS, WHOLE, acuity, asked_px, in_pattern, in_turn,
@@ -19,9 +21,7 @@ use crate::kernel::quads::{
 };
 use crate::kernel::resample::{has_code, tap_codes};
 use crate::kernel::sanitize;
-use crate::kernel::smr::root_difference;
 use crate::kernel::stored_sample::{code_word, is_empty, unpack_full};
-use crate::kernel::wrs::expose;
 use crate::method::HistoryLayout;
 use crate::notes::NoNotes;
 use glam::Vec3;

@@ -3,6 +3,7 @@
 use super::view::{NO_NOISE, View};
 use crate::cpu::inputs::Previous;
 use crate::kernel::antialias::{Mean, ONE_SAMPLE_LOD, is_of_surfaces, mean_lod, mean_of};
+use crate::kernel::color::expose;
 use crate::kernel::noise::{Noise, expose_noise, unpack_noise};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::resample::{has_code, tap_codes, tap_codes_between};
@@ -10,7 +11,6 @@ use crate::kernel::stored_sample::{
     Around, EXACT_PX, INVERSE_MEAN_REACH, INVERSE_REACH, Interpolated, StoredSample, add_stored, can_replace,
     code_word, interpolate, is_empty, stored_weight, unpack_full, unpack_stored,
 };
-use crate::kernel::wrs::expose;
 use crate::notes::{NoteStage, Notes};
 use glam::{Vec2, Vec3};
 

@@ -1,7 +1,8 @@
 //! The decision of a pixel for random inputs: S4 to S7.
 
 use super::rig::*;
-use afterimage::kernel::smr::{Evidence, Matched, SmrParams, decide, root_difference};
+use afterimage::kernel::color::root_difference;
+use afterimage::kernel::smr::{Evidence, Matched, SmrParams, decide};
 use glam::Vec3;
 
 const PARAMS: SmrParams = SmrParams {

@@ -1,8 +1,8 @@
 //! Reading between texels, and differences of colors, against f64.
 
 use super::rig::*;
+use afterimage::kernel::color::root_difference;
 use afterimage::kernel::resample::{Gathered, Resampled, Tap, gather_around, resolve, sharp_sum, taps_around};
-use afterimage::kernel::smr::root_difference;
 use glam::{DVec3, Vec3};
 
 fn color(draws: &mut Draws, brightest: f32) -> Vec3 {

@@ -33,7 +33,7 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ("resample::nothing_gathered", "vec3f(0.0), 0.0, 0.0, true", "vec3f(0.0), 0.1, 0.0, true"),
     ("smr::decide", "if relit < unlit *", "if relit > unlit *"),
     ("smr::decide", "(correction * e.unit)", "correction"),
-    ("smr::moves_alike", "abs(other.y - own.y) <= within", "abs(other.y - own.x) <= within"),
+    ("reproject::moves_alike", "abs(other.y - own.y) <= within", "abs(other.y - own.x) <= within"),
     ("smr::mip_mean", "(a + b + c + d)", "(a + b + c + c)"),
     ("noise::noise_difference", "deviations * inverse_unit", "deviations"),
     ("noise::add_noise", "(weight * weight) / n.samples", "weight / n.samples"),

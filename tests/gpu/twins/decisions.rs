@@ -4,7 +4,7 @@ use super::state::draw;
 use super::*;
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::wrs::{BiasCode, Decision, GateCode, Past, SamplerCode, WrsParams};
-use afterimage::kernel::{debug_view, pack, wrs};
+use afterimage::kernel::{color, debug_view, pack, wrs};
 use afterimage::{DebugView, Verdict};
 
 /// A stored color and a candidate like it, unlike it, or equal to it.
@@ -87,7 +87,7 @@ pub const PROBES: &[Probe] = &[
                 .within(|r| r.f(0) <= pack::MAX_W_SUM)
         }
     ),
-    probe!(wrs::expose, |rows| {
+    probe!(color::expose, |rows| {
         // As unpack leaves colors, and ratios as frames have them.
         let halves: Vec<u32> = (0..65536).filter(|h| h & 0x7c00 != 0x7c00).collect();
         let half = |d: &mut Draws| pack::half_value(halves[d.bits() as usize % halves.len()]).to_bits();

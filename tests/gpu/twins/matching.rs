@@ -1,8 +1,8 @@
 //! Functions that match the scales of history and candidate: matched.
 
 use super::*;
-use afterimage::kernel::smr;
 use afterimage::kernel::smr::{Evidence, Matched, SmrParams};
+use afterimage::kernel::{color, reproject, smr};
 
 /// Channels of sanitized colors: 0, dark, negative, the largest half.
 pub fn channels() -> Vec<u32> {
@@ -128,8 +128,8 @@ fn decide_rows(rows: Rows, flags: Option<[u32; 3]>) -> Rows {
 }
 
 pub const PROBES: &[Probe] = &[
-    probe!(smr::root_difference, pair_rows),
-    probe!(smr::roots, |rows| {
+    probe!(color::root_difference, pair_rows),
+    probe!(color::roots, |rows| {
         // A root of a denormal is a normal number, unless a device flushes it.
         let c: Vec<u32> = finite().into_iter().filter(|&x| x & 0x7fff_ffff == 0 || x & 0x7f80_0000 != 0).collect();
         rows.mixed(&[&c, &c, &c]).each(&[Signed(-24, 17); 3])
@@ -143,7 +143,7 @@ pub const PROBES: &[Probe] = &[
             push(row, &[d.range(0.1, 10.0)]);
         })
     }),
-    probe!(smr::moves_alike, |rows| {
+    probe!(reproject::moves_alike, |rows| {
         let v = [finite(), around(&[0.5, -0.5, 16.0])].concat();
         rows.mixed(&[&v, &v, &v, &v]).random(|d, row| {
             let own = [d.range(-40.0, 40.0), d.range(-40.0, 40.0)];

@@ -2,7 +2,7 @@
 
 use super::*;
 use afterimage::kernel::depth::{DisparityMap, INVALID_DISPARITY};
-use afterimage::kernel::{acuity, approx, color, depth};
+use afterimage::kernel::{acuity, approx, color, depth, lens};
 
 fn one(rows: Rows, table: &[u32], random: fn(&mut Draws) -> u32) -> Rows {
     rows.cross(&[table]).random(|d, row| row.push(random(d)))
@@ -33,7 +33,7 @@ pub const PROBES: &[Probe] = &[
         .random_of("draws", |d, row| row.push(range(d, 0.0, 1.0)))
         .within(|r| r.f(0) >= f32::MIN_POSITIVE)
     }),
-    probe!(acuity::eccentricity_deg, |rows| {
+    probe!(lens::eccentricity_deg, |rows| {
         let axis = floats(&[0.0, -0.0, 1.0, -1.0, 1e-4, 1e5]);
         rows.cross(&[&axis, &axis, &axis, &axis, &axis, &axis])
             .random_of("eccentricity", |d, row| row.extend((0..6).map(|_| range(d, -2.0, 2.0))))

@@ -3,6 +3,7 @@
 use super::matching::{channels, like, push, stored_color};
 use super::surfaces::fraction;
 use super::*;
+use afterimage::kernel::color::to_ycocg;
 use afterimage::kernel::taa;
 use afterimage::kernel::taau;
 use afterimage::kernel::taau::SamplesAround;
@@ -36,7 +37,7 @@ fn push_box(d: &mut Draws, row: &mut Vec<u32>, center: [f32; 3]) {
     let (mut sum, mut squares) = (Vec3::ZERO, Vec3::ZERO);
     let flat = d.bits().is_multiple_of(4);
     for _ in 0..9 {
-        let v = taa::to_ycocg(Vec3::from(if flat { center } else { like(d, center) }));
+        let v = to_ycocg(Vec3::from(if flat { center } else { like(d, center) }));
         sum += v;
         squares += v * v;
     }

@@ -14,7 +14,7 @@ struct LuminanceConstants {
 @group(0) @binding(3) var right: texture_2d<f32>;
 @group(0) @binding(4) var<storage, read_write> packed: array<u32>;
 
-fn color(picture: u32, px: vec2u) -> vec3f {
+fn color_of(picture: u32, px: vec2u) -> vec3f {
     switch picture {
         case 0u: {
             return textureLoad(full, px, 0).xyz;
@@ -45,7 +45,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     for (var i = 0u; i < 4u; i++) {
         let px = vec2u(4u * id.x + i, id.y);
         if px.x < frame.size.x {
-            word |= level(color(id.z, px)) << (8u * i);
+            word |= level(color_of(id.z, px)) << (8u * i);
         }
     }
     packed[(id.z * frame.size.y + id.y) * row_words + id.x] = word;

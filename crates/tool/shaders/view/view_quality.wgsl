@@ -1,5 +1,5 @@
-//#use acuity
 //#use color
+//#use lens
 // Squared error of what is shown against the full-rate frame, beyond an eccentricity: a sum and a count for each tile
 // of 64x16 pixels. CPU twin: Scorer::push_errors in crates/eval/src/metric/score.rs.
 
