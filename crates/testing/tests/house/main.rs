@@ -6,6 +6,7 @@
 mod commands;
 mod manifests;
 mod modules;
+mod page_tables;
 mod paths;
 mod properties;
 mod prose;
