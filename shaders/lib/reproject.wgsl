@@ -12,8 +12,7 @@ const VERDICT_EMPTY: u32 = 4u;
 const VERDICT_DISOCCLUDED: u32 = 5u;
 const VERDICT_DISTRUSTED: u32 = 6u;
 const VERDICT_COUNT: u32 = 7u;
-const COHERENT_PX: f32 = 0.5;
-const COHERENT_SHARE: f32 = 0.1;
+const COHERENT: vec2f = vec2f(0.5, 0.1);
 
 // sRGB-encoded.
 fn verdict_color(verdict: u32) -> vec3f {
@@ -92,6 +91,6 @@ fn has_no_vector(given: vec2f, none: vec2f) -> bool {
 }
 
 fn moves_alike(own: vec2f, other: vec2f) -> bool {
-    let within = COHERENT_PX + COHERENT_SHARE * (abs(own.x) + abs(own.y));
+    let within = COHERENT.x + COHERENT.y * (abs(own.x) + abs(own.y));
     return abs(other.x - own.x) <= within && abs(other.y - own.y) <= within;
 }

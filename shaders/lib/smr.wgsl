@@ -4,8 +4,7 @@
 // Twin of src/kernel/smr.rs, which explains the constants.
 
 const QUALITY_WIDTH: f32 = 0.1;
-const GATE_FROM: f32 = 3.0;
-const GATE_WIDTH: f32 = 6.0;
+const GATE: vec2f = vec2f(3.0, 6.0);
 const RELIGHT: vec2f = vec2f(1.5, 0.5);
 const RELIGHT_BLOCKS: vec2f = vec2f(8.0, 0.5);
 const RELIT: f32 = 1.0;
@@ -13,8 +12,7 @@ const RELIT_BLOCKS: f32 = 0.5;
 const CORRECTION: f32 = 0.2;
 const CORRECTION_BLOCKS: f32 = 0.1;
 const ALIKE_CONTRAST: f32 = 0.5;
-const GAIN_LEAST: f32 = 0.2;
-const GAIN_MOST: f32 = 5.0;
+const GAIN: vec2f = vec2f(0.2, 5.0);
 const LEAST_WORN: f32 = 0.5 / LOD_STEPS;
 const MIDDLE: f32 = 0.5;
 const LEAST_BRIGHTNESS: f32 = 0x1p-14;
@@ -56,7 +54,7 @@ fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, confid
 }
 
 fn gain(observed: f32, predicted: f32, changed: f32) -> f32 {
-    let ratio = clamp((observed + DARK) / (predicted + DARK), GAIN_LEAST, GAIN_MOST);
+    let ratio = clamp((observed + DARK) / (predicted + DARK), GAIN.x, GAIN.y);
     let share = changed * smooth_step(0.5, 1.0, 10.0 * abs(ratio - 1.0));
     return (1.0 - share) + ratio * share;
 }
@@ -137,8 +135,8 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
     let width = p.accumulate_tolerance + (1.0 - p.accumulate_tolerance) * reuse.finer;
     let slack = contrast * (ALIKE_CONTRAST + (1.0 - ALIKE_CONTRAST) * reuse.finer);
     let scale = select(1.0, 4.0, p.blocks);
-    let keep = p.tolerance * (width * (GATE_FROM * scale) + slack);
-    let fit = 1.0 - smooth_step(keep + e.noise, (p.tolerance * (GATE_WIDTH * scale)) * width, d);
+    let keep = p.tolerance * (width * (GATE.x * scale) + slack);
+    let fit = 1.0 - smooth_step(keep + e.noise, (p.tolerance * (GATE.y * scale)) * width, d);
     let acceptance = fit * e.trust;
     let share = acceptance * reuse.share;
     let correction = select(CORRECTION, CORRECTION_BLOCKS, p.blocks);

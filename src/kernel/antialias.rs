@@ -68,7 +68,7 @@ const RUN_KEPT: f32 = 0.5;
 /// Least number of samples that it keeps.
 const RUN_SAMPLES: f32 = 3.0;
 /// Half width of the box of nine samples to which history is clipped at full rate, in standard deviations.
-const BOX_SIGMAS: f32 = 2.0;
+const CLIP_SIGMAS: f32 = 2.0;
 /// Share of the clip that is applied, so that a thin feature is not lost at once if a frame misses it.
 const CLIP: f32 = 0.5;
 /// Cost of a clip: the share of its samples that a mean loses, per clip distance in units of the range from black to
@@ -279,7 +279,7 @@ pub fn clip(near: Near, history: Vec3) -> Clip {
     let inverse = 1.0 / near.count;
     let variance = (near.squares * near.count - near.sum * near.sum) * (inverse * inverse);
     let past = to_ycocg(history);
-    let inside = clip_to_box(past, near.sum * inverse, roots(variance) * BOX_SIGMAS + Vec3::splat(ROUNDING));
+    let inside = clip_to_box(past, near.sum * inverse, roots(variance) * CLIP_SIGMAS + Vec3::splat(ROUNDING));
     let by = (inside - past) * CLIP;
     let moved = by.x.abs().max(by.y.abs()).max(by.z.abs());
     let outer = by.x - by.z;

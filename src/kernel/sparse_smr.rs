@@ -44,7 +44,7 @@ const AGREE_ERRORS: f32 = 4.0;
 /// Added to the expected errors when a neighbour is compared with a sample's own gain, in units of [`root_difference`].
 const AGREE_ERROR: f32 = 0.8;
 /// Gate: mean difference at which the fit starts to fall, and width over which it falls to 0, in expected errors.
-const GATE: [f32; 2] = [2.0, 4.0];
+const FIT_ERRORS: [f32; 2] = [2.0, 4.0];
 /// Share of the confident samples around that agrees with a gain, from which on it is used, and the slope from there to
 /// the complete gain. A square of four of nine samples is 0.56, a straight edge 0.75.
 const AGREED: [f32; 2] = [0.6, 6.0];
@@ -57,7 +57,7 @@ pub const RELIT_ERRORS: f32 = 0.8;
 const MOST_DEVIATION: f32 = 63.75;
 const DEVIATION_STEPS: f32 = 4.0;
 /// Smallest and largest gain.
-const GAIN: [f32; 2] = [0.2, 5.0];
+const SAMPLE_GAIN: [f32; 2] = [0.2, 5.0];
 /// Levels of detail that history loses when light doubles: history that has moved, and single samples that have not.
 /// Means that have not moved lose samples instead.
 const WORN: [f32; 2] = [4.0, 1.0];
@@ -142,7 +142,7 @@ pub fn noisy_lod_confidence(lod: f32, past: Noise, luma: f32) -> f32 {
 /// Gain for one channel, limited.
 #[inline]
 pub fn ratio(observed: f32, predicted: f32) -> f32 {
-    ((observed + DARK) / (predicted + DARK)).clamp(GAIN[0], GAIN[1])
+    ((observed + DARK) / (predicted + DARK)).clamp(SAMPLE_GAIN[0], SAMPLE_GAIN[1])
 }
 
 /// Per-channel ratios of two colors, limited.
@@ -215,7 +215,7 @@ pub fn agreed(a: ObservedAround) -> f32 {
 #[inline]
 pub fn not_jitter(a: ObservedAround, difference: f32) -> f32 {
     let beyond = (a.deviation - PLAIN_DEVIATION * a.weight) * (1.0 / a.weight);
-    if beyond > 0.0 { smooth_step(GATE[0], GATE[1], difference / beyond.max(1e-3)) } else { 1.0 }
+    if beyond > 0.0 { smooth_step(FIT_ERRORS[0], FIT_ERRORS[1], difference / beyond.max(1e-3)) } else { 1.0 }
 }
 
 /// Gain of the light around a sample: the ratio of the means of samples and of history at the same pixels, blended to 1
@@ -253,7 +253,7 @@ pub fn own_fit(own: Observation, gain: Vec3) -> f32 {
 /// that mean, in \[0, 1\]; with a confidence of 0, history fits.
 #[inline]
 pub fn fit(errors: f32, confidence: f32) -> f32 {
-    1.0 - confidence * smooth_step(GATE[0], GATE[1], errors)
+    1.0 - confidence * smooth_step(FIT_ERRORS[0], FIT_ERRORS[1], errors)
 }
 
 /// Vote of another sample on whether history fits, for [`fit_by_votes`]: its weight if it contradicts history, and its
@@ -261,7 +261,7 @@ pub fn fit(errors: f32, confidence: f32) -> f32 {
 #[inline]
 pub fn vote(o: Observation, errors: f32, spatial: f32) -> Vec2 {
     let weight = spatial * o.confidence;
-    Vec2::new(smooth_step(GATE[0], GATE[1], errors) * weight, weight)
+    Vec2::new(smooth_step(FIT_ERRORS[0], FIT_ERRORS[1], errors) * weight, weight)
 }
 
 /// Fit of history around a sample by the majority of the other samples, in \[0, 1\]. `votes`: sum of their [`vote`]s.

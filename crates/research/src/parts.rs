@@ -50,11 +50,10 @@ pub const PARTS: &[Part] = &[
         methods: HISTORIES,
         replaced: &[
             ("let limited = clamp(c, vec3f(-MAX_HALF), vec3f(MAX_HALF));", "let limited = c;"),
-            ("let c = clamp(linear_color, vec3f(-MAX_HALF), vec3f(MAX_HALF));", "let c = linear_color;"),
             ("max(g.sharp * (1.0 / weights), vec3f(0.0))", "g.sharp * (1.0 / weights)"),
             (
-                "let ratio = clamp((candidate + DARK) / (history + DARK), GAIN_LEAST, GAIN_MOST);",
-                "let ratio = (candidate + DARK) / (history + DARK);",
+                "let ratio = clamp((observed + DARK) / (predicted + DARK), GAIN.x, GAIN.y);",
+                "let ratio = (observed + DARK) / (predicted + DARK);",
             ),
         ],
     },

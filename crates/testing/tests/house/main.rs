@@ -13,5 +13,6 @@ mod prose;
 mod shader_names;
 mod shader_tables;
 mod tree;
+mod twin_constants;
 mod uses;
 mod words;
