@@ -97,6 +97,7 @@ fn sin_cos_turns(x: f32) -> vec2f {
     return vec2f(-c, s);
 }
 
+// Smooth step (3t^2 - 2t^3): 0 up to `low`, 1 from `low + width` on.
 fn smooth_step(low: f32, width: f32, x: f32) -> f32 {
     let t = clamp((x - low) / width, 0.0, 1.0);
     return (t * t) * (3.0 - 2.0 * t);

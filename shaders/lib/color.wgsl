@@ -45,6 +45,7 @@ fn srgb_encode(linear_value: f32) -> f32 {
     return select(encoded, -encoded, linear_value < 0.0);
 }
 
+// Linear value of one sRGB-encoded channel.
 fn srgb_decode(encoded: f32) -> f32 {
     let a = abs(encoded);
     var decoded = a * (1.0f / 12.92);
@@ -61,6 +62,7 @@ fn luma(c: vec3f) -> f32 {
     return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
 }
 
+// f(t) of CIE Lab: the cube root, or a line for small t.
 fn lab_f(t: f32) -> f32 {
     if t > LAB_EPSILON {
         return cbrt(t);
@@ -68,6 +70,7 @@ fn lab_f(t: f32) -> f32 {
     return LAB_SLOPE * t + LAB_OFFSET;
 }
 
+// CIE L*a*b* (white: D65 at linear 1) of a linear Rec.
 fn lab(c: vec3f) -> vec3f {
     let fx = lab_f(0.43388735 * c.x + 0.376224 * c.y + 0.18988865 * c.z);
     let fy = lab_f(0.212639 * c.x + 0.7151687 * c.y + 0.0721923 * c.z);
@@ -87,14 +90,17 @@ fn delta_e94(reference: vec3f, stored: vec3f) -> f32 {
     return sqrt(d.x * d.x + (dc * dc) / (sc * sc) + dh2 / (sh * sh));
 }
 
+// Stored color scaled to this frame's exposure: times `ratio`, clamped to halves.
 fn expose(stored_color: vec3f, ratio: f32) -> vec3f {
     return clamp(stored_color * ratio, vec3f(-MAX_HALF), vec3f(MAX_HALF));
 }
 
+// Difference of two linear colors: distance of their square roots in YCoCg, 100 between black and white.
 fn root_difference(x: vec3f, y: vec3f) -> f32 {
     return distance_of_roots(roots(x), roots(y));
 }
 
+// `root_difference` from the square roots of two colors.
 fn distance_of_roots(x: vec3f, y: vec3f) -> f32 {
     let d = x - y;
     let outer = 0.25 * (d.x + d.z);
@@ -106,14 +112,17 @@ fn distance_of_roots(x: vec3f, y: vec3f) -> f32 {
     return 100.0 * sqrt(luma * luma + 0.5 * chroma);
 }
 
+// Square roots of a color's channels; 0 for negative ones.
 fn roots(c: vec3f) -> vec3f {
     return past_roots(max(c, vec3f(0.0)));
 }
 
+// Square roots of the channels of history, which is at least 0.
 fn past_roots(c: vec3f) -> vec3f {
     return sqrt(c);
 }
 
+// YCoCg of the square roots of a linear color.
 fn to_ycocg(c: vec3f) -> vec3f {
     let r = roots(c);
     let outer = 0.25 * (r.x + r.z);
@@ -121,11 +130,13 @@ fn to_ycocg(c: vec3f) -> vec3f {
     return vec3f(outer + inner, 0.5 * (r.x - r.z), inner - outer);
 }
 
+// Square roots of RGB from YCoCg, at least 0.
 fn roots_of_ycocg(y: vec3f) -> vec3f {
     let outer = y.x - y.z;
     return max(vec3f(outer + y.y, y.x + y.z, outer - y.y), vec3f(0.0));
 }
 
+// Clips `history` along the line to `mean` to the box of half width `extent` around `mean`.
 fn clip_to_box(history: vec3f, mean: vec3f, extent: vec3f) -> vec3f {
     let d = history - mean;
     let ratio = extent / max(abs(d), vec3f(1e-6));

@@ -12,6 +12,7 @@ struct DisparityMap {
     flags: u32,
 }
 
+// Disparity of a stored depth value, at least 0; 0 for infinite distance.
 fn disparity(stored: f32, map: DisparityMap) -> f32 {
     if (bitcast<u32>(stored) & 0x7fffffffu) > 0x7f800000u {
         return INVALID_DISPARITY;
@@ -42,6 +43,8 @@ fn previous_disparity(disparity: f32, stretch: f32, shift: f32) -> f32 {
     return disparity / denominator;
 }
 
+// Whether disparities differ by at most `relative` of the larger one plus `slope`, by which the surface itself may
+// change.
 fn same_surface(expected: f32, stored: f32, relative: f32, slope: f32) -> bool {
     if expected < 0.0 || stored < 0.0 {
         return false;

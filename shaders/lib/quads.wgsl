@@ -26,6 +26,7 @@ const KEYS: u32 = 63u << HASH_BITS;
 const CODE_OF_ONE: i32 = 36;
 const GROUPS_PER_ROW: u32 = 32768u;
 
+// Region of a quad at `e_deg` degrees from the gaze.
 fn region(e_deg: f32, fovea_radius_deg: f32, mid_radius_deg: f32) -> u32 {
     if e_deg < fovea_radius_deg {
         return IN_FOVEA;
@@ -33,22 +34,29 @@ fn region(e_deg: f32, fovea_radius_deg: f32, mid_radius_deg: f32) -> u32 {
     return select(IN_PERIPHERY, IN_MIDDLE, e_deg < mid_radius_deg);
 }
 
+// Whether the even pattern has quad (`x`, `y`): one quad in each block of `step_quads` quads a side, at `offset` in its
+// block.
 fn in_pattern(x: u32, y: u32, step_quads: u32, offset: vec2u) -> bool {
     return (x & (step_quads - 1u)) == offset.x && (y & (step_quads - 1u)) == offset.y;
 }
 
+// Whether a frame's pattern has the block of quad (`x`, `y`), of blocks in a checkerboard that alternates: half of the
+// blocks a frame.
 fn in_turn(x: u32, y: u32, step_quads: u32, turn: u32) -> bool {
     return (((x / step_quads) ^ (y / step_quads) ^ turn) & 1u) == 0u;
 }
 
+// The pixel of quad (`x`, `y`) that is tested in a frame: each of the four in four frames.
 fn asked_px(x: u32, y: u32, frame_low: u32) -> vec2u {
     return vec2u(2u * x + ((frame_low ^ x ^ y) & 1u), 2u * y + ((frame_low >> 1u) & 1u));
 }
 
+// Number of a pixel in its quad, row by row; also its bit in the quad's mask.
 fn place_in_quad(px: vec2u) -> u32 {
     return (px.x & 1u) | ((px.y & 1u) << 1u);
 }
 
+// The shaded pixel of the quad at `quad` that is nearest to pixel `px`; the first of equally near ones.
 fn nearest_px(mask: u32, quad: vec2u, px: vec2u) -> vec2u {
     var best = 0xffffffffu;
     for (var place = 0u; place < 4u; place++) {
@@ -59,23 +67,29 @@ fn nearest_px(mask: u32, quad: vec2u, px: vec2u) -> vec2u {
     return 2u * quad + vec2u(best & 1u, (best >> 1u) & 1u);
 }
 
+// Quadrant of an offset other than 0; the half-axis that begins a quadrant belongs to it.
 fn quadrant_of(x: i32, y: i32) -> u32 {
     let below = y > 0 || (y == 0 && x > 0);
     return select(2u + u32(x >= 0), u32(x <= 0), below);
 }
 
+// Code of a sample at an offset in pixels, each from -32 to 31: the smallest of some codes is the nearest sample.
 fn sample_code(x: i32, y: i32) -> u32 {
     return (u32(x * x + y * y) << 12u) | u32(x + 32) | (u32(y + 32) << 6u);
 }
 
+// Offset in pixels of the sample with a code.
 fn sample_offset(code: u32) -> vec2i {
     return vec2i(vec2u(code & 63u, (code >> 6u) & 63u)) - 32;
 }
 
+// Need of quad (`x`, `y`) without history.
 fn no_history_need(x: u32, y: u32, offset: vec2u) -> f32 {
     return select(LATER_SHARE * NO_HISTORY_NEED, NO_HISTORY_NEED, in_pattern(x, y, FIRST_STEP, offset));
 }
 
+// Reduction of a pixel's squared error that a sample of its own is expected to bring, from history of level of detail
+// `lod`, of `samples` samples and with the local contrast `contrast`.
 fn need(lod: f32, samples: f32, contrast: f32) -> f32 {
     let limited = min(contrast, MOST_CONTRAST);
     let coarse = (limited + COARSE_CONTRAST) * min(lod, COARSEST);
@@ -84,11 +98,14 @@ fn need(lod: f32, samples: f32, contrast: f32) -> f32 {
     return coarse * coarse + select(0.0, few, samples < ENOUGH_SAMPLES);
 }
 
+// Share of a squared error that counts at `e_deg` degrees from the gaze.
 fn acuity(e_deg: f32) -> f32 {
     let share = 1.0 / (1.0 + e_deg * (1.0f / HALF_DEG));
     return share * share;
 }
 
+// Share of the need of quad `i` that counts, of a block of 2x2 quads with these needs: less for each quad whose need is
+// larger, so that chosen quads do not clump.
 fn share_in_block(needs: vec4f, i: u32) -> f32 {
     var share = 1.0;
     for (var other = 0u; other < 4u; other++) {
@@ -98,16 +115,19 @@ fn share_in_block(needs: vec4f, i: u32) -> f32 {
     return share;
 }
 
+// Key of a quad of the need `need`, 0 for none: its binary logarithm in half steps, then a hash.
 fn quad_key(needed: f32, x: u32, y: u32, frame_low: u32, key: u32) -> u32 {
     let hash = bits(x, y, frame_low, ~key) >> (32u - HASH_BITS);
     let halves = i32(bitcast<u32>(needed) >> 22u) - 254 + CODE_OF_ONE;
     return select(0u, (u32(clamp(halves, 1, 62)) << HASH_BITS) | hash, needed > 0.0);
 }
 
+// Samples of a mean as a whole number, from 1 to 31, for `path_key`.
 fn known_samples(samples: f32) -> u32 {
     return u32(clamp(samples, 1.0, MOST_KNOWN));
 }
 
+// Key of a pixel's path number `path` (from 1 on) in a frame, from that of its first path, `key`; 0 for none.
 fn path_key(key: u32, samples: u32, path: u32) -> u32 {
     let first = samples * (samples + 1u);
     let own = (samples + path - 1u) * (samples + path);
@@ -119,6 +139,8 @@ fn path_key(key: u32, samples: u32, path: u32) -> u32 {
     return select(0u, key - fall, key >= fall + (1u << HASH_BITS));
 }
 
+// Number of paths of a pixel whose first path has the key `first` and whose further paths have those of `path_key` of
+// `further`: as many as there are keys from `threshold` on.
 fn paths(first: u32, further: u32, samples: u32, is_even: bool, threshold: u32) -> u32 {
     var count = u32(is_even || first >= threshold);
     for (var path = 2u; path <= MOST_PATHS && path_key(further, samples, path) >= threshold; path++) {
@@ -127,34 +149,44 @@ fn paths(first: u32, further: u32, samples: u32, is_even: bool, threshold: u32) 
     return count;
 }
 
+// Code of a neighbour at an offset in quads, in eight bits, below its squared distance: the smallest of some neighbours
+// is the nearest.
 fn neighbour(x: i32, y: i32) -> u32 {
     let inside = x >= -REACH && y >= -REACH && x < REACH && y < REACH;
     let code = (u32(x * x + y * y) << 8u) | u32(x + REACH) | (u32(y + REACH) << 4u);
     return select(0xffffffffu, code, inside);
 }
 
+// Bits of the shaded quads within reach of the quad in column `x`: bit i is the quad at the offset i - 8.
 fn window(word: u32, x: u32) -> u32 {
     return (word >> (x % RUN_QUADS)) & 0xffffu;
 }
 
+// Bits of a window at the offsets from `low` (-8 to 20) to `high` (-20 to 7).
 fn offset_bits(low: i32, high: i32) -> u32 {
     return (0xffffu << u32(low + REACH)) & (0xffffu >> u32(REACH - 1 - high));
 }
 
+// Code of the first shaded quad of a window, `y` rows below, at the offsets from `low` to `high`; `u32::MAX` without
+// one.
 fn first_of(window: u32, low: i32, high: i32, y: i32) -> u32 {
     let bits = window & offset_bits(low, high);
     return select(neighbour(i32(firstTrailingBit(bits)) - REACH, y), 0xffffffffu, bits == 0u);
 }
 
+// Code of the last such quad.
 fn last_of(window: u32, low: i32, high: i32, y: i32) -> u32 {
     let bits = window & offset_bits(low, high);
     return select(neighbour(i32(firstLeadingBit(bits)) - REACH, y), 0xffffffffu, bits == 0u);
 }
 
+// Offsets in a row that is `rows` away, above 0: the largest one of the octant around the column, and the smallest one
+// of those around the row.
 fn octant_offsets(rows: i32) -> vec2i {
     return vec2i(2 * rows / 5, (5 * rows + 1) / 2);
 }
 
+// Offset in quads of the neighbour with a code.
 fn neighbour_offset(code: u32) -> vec2i {
     return vec2i(vec2u(code & 15u, (code >> 4u) & 15u)) - REACH;
 }

@@ -34,6 +34,7 @@ struct Reprojection {
     at: vec2u,
 }
 
+// Texel of the previous frame nearest to the previous position of pixel (`x`, `y`).
 fn nearest(x: u32, y: u32, motion: vec2f, size: vec2u) -> Reprojection {
     // Bits of sizes are ordered as the sizes are, infinity and NaN last.
     let size_bits = bitcast<vec2u>(motion) & vec2u(0x7fffffffu);
@@ -63,6 +64,7 @@ struct ViewMotion {
     sky: f32,
 }
 
+// Motion vector in pixels of a surface that stands still in the world, at the ray (`ray`, 1): previous minus current.
 fn camera_vector(ray: vec2f, disparity: f32, motion: ViewMotion) -> vec2f {
     if disparity < 0.0 {
         return vec2f(UNKNOWN_VECTOR_PX);
@@ -86,10 +88,12 @@ fn camera_vector(ray: vec2f, disparity: f32, motion: ViewMotion) -> vec2f {
     return clamp(vector, vec2f(-MAX_CAMERA_PX), vec2f(MAX_CAMERA_PX));
 }
 
+// Whether a pixel of a motion input has no vector: it is `none`, or not finite.
 fn has_no_vector(given: vec2f, none: vec2f) -> bool {
     return !(is_finite(given.x) && is_finite(given.y)) || all(given == none);
 }
 
+// Whether two motion vectors, in pixels, can belong to one surface.
 fn moves_alike(own: vec2f, other: vec2f) -> bool {
     let within = COHERENT.x + COHERENT.y * (abs(own.x) + abs(own.y));
     return abs(other.x - own.x) <= within && abs(other.y - own.y) <= within;

@@ -6,18 +6,23 @@ const STAND_IN_WEIGHT: f32 = 0.1;
 const ROUNDS: u32 = 3u;
 const LARGEST_DISPARITY: f32 = 1e30;
 
+// Number of the texel (as for `corner_weight`) that has the second largest bilinear weight at the fractions of a
+// position.
 fn second_corner(fraction: vec2f) -> u32 {
     let nearest = select(0u, 1u, fraction.x >= 0.5) + 2u * select(0u, 1u, fraction.y >= 0.5);
     let along_x = abs(fraction.x - 0.5) <= abs(fraction.y - 0.5);
     return nearest ^ select(2u, 1u, along_x);
 }
 
+// Bilinear weight of texel number `corner` (top left, top right, bottom left, bottom right) at the fractions of a
+// position.
 fn corner_weight(corner: u32, fraction: vec2f) -> f32 {
     let x = select(1.0 - fraction.x, fraction.x, (corner & 1u) == 1u);
     let y = select(1.0 - fraction.y, fraction.y, corner >= 2u);
     return x * y;
 }
 
+// Catmull-Rom weights of four texels around a position at distance `t` in [0, 1) after the second.
 fn catmull_rom(t: f32) -> vec4f {
     let t2 = t * t;
     return vec4f(
@@ -37,6 +42,7 @@ struct TapsAround {
     sharp_y: vec4f,
 }
 
+// The taps around a position: a `fraction` of a texel, in [0, 1), after `texel`.
 fn taps_around(texel: vec2i, fraction: vec2f, size: vec2u) -> TapsAround {
     return TapsAround(texel, vec2i(size) - 1, fraction, catmull_rom(fraction.x), catmull_rom(fraction.y));
 }
@@ -54,6 +60,7 @@ struct FourTaps {
     linear_row: f32,
 }
 
+// The taps of round `index`.
 fn taps_of(around: TapsAround, index: u32) -> FourTaps {
     let below = index == 1u;
     let outside = index == 2u;
@@ -75,10 +82,13 @@ fn taps_of(around: TapsAround, index: u32) -> FourTaps {
     );
 }
 
+// Sum of the taps' Catmull-Rom weights: 1 without those of the corners.
 fn sharp_sum(around: TapsAround) -> f32 {
     return 1.0 - (around.sharp_x.x + around.sharp_x.w) * (around.sharp_y.x + around.sharp_y.w);
 }
 
+// The first of the `disparity_code`s from `low` to `high` times the disparity `expected`, and their number: 0 if the
+// expected disparity is negative.
 fn codes_between(expected: f32, low: f32, high: f32) -> vec2u {
     // The limit keeps compilers from merging these factors with those of the disparity.
     let limited = min(expected, LARGEST_DISPARITY);
@@ -87,16 +97,19 @@ fn codes_between(expected: f32, low: f32, high: f32) -> vec2u {
     return vec2u(first, select(last - first + 1u, 0u, expected < 0.0));
 }
 
+// `codes_between` of the surface that has the disparity `expected`, within `TAP_RELATIVE`.
 fn tap_codes(expected: f32) -> vec2u {
     return codes_between(expected, 1.0f - TAP_RELATIVE, 1.0f / (1.0f - TAP_RELATIVE));
 }
 
+// `tap_codes` for surfaces that have the disparities from `farthest` to `nearest`, both of them at least 0.
 fn tap_codes_between(farthest: f32, nearest: f32) -> vec2u {
     let first = tap_codes(farthest);
     let last = tap_codes(nearest);
     return vec2u(first.x, max(last.x, first.x) - first.x + last.y);
 }
 
+// Whether the disparity in the high half of `word` is one of `codes_between`.
 fn has_code(word: u32, codes: vec2u) -> bool {
     return (word >> 16u) - codes.x < codes.y;
 }
@@ -107,6 +120,7 @@ struct Tap {
     same: bool,
 }
 
+// Tap of a packed surface.
 fn surface_tap(words: vec2u, codes: vec2u, any_code: bool) -> Tap {
     let code = lod_code(words);
     return Tap(surface_color(words), lod_value(code), select(has_code(words.y, codes), code != EMPTY_LOD, any_code));
@@ -120,10 +134,12 @@ struct Gathered {
     complete: bool,
 }
 
+// Sums over no taps.
 fn nothing_gathered() -> Gathered {
     return Gathered(vec3f(0.0), vec3f(0.0), 0.0, 0.0, true);
 }
 
+// Adds four taps with their weights.
 fn gather(g: Gathered, a: Tap, b: Tap, c: Tap, d: Tap, four: FourTaps) -> Gathered {
     let x = four.sharp_x;
     let first = a.color * x.x + b.color * x.y;
@@ -144,6 +160,7 @@ struct Resampled {
     lod: f32,
 }
 
+// Result of the sums.
 fn resolve(g: Gathered, weights: f32, nearest: Surface) -> Resampled {
     if g.smooth_sum < 0.01 {
         return Resampled(nearest.color, nearest.color, nearest.lod);

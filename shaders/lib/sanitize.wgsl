@@ -4,6 +4,7 @@
 const MAX_HALF: f32 = 65504.0;
 const LEAST_COLOR: f32 = 0x1p-32;
 
+// Whether a number is neither NaN nor infinite.
 fn is_finite(x: f32) -> bool {
     return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
 }
@@ -13,6 +14,8 @@ struct Sanitized {
     usable: bool,
 }
 
+// Color clamped to +-65504, with channels below `LEAST_COLOR` as 0, and whether it is usable; black and `false` if any
+// component is NaN or infinite.
 fn color(c: vec3f) -> Sanitized {
     let size = bitcast<vec3u>(c) & vec3u(0x7fffffffu);
     if max(max(size.x, size.y), size.z) < 0x7f800000u {

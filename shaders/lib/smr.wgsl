@@ -26,14 +26,17 @@ struct SmrParams {
     noisy: bool,
 }
 
+// As `root_difference`, of a color and of history, which is at least 0.
 fn past_difference(x: vec3f, past: vec3f) -> f32 {
     return distance_of_roots(roots(x), past_roots(past));
 }
 
+// Contrast of history: `root_difference` of two of its levels.
 fn past_contrast(level: vec3f, next_level: vec3f) -> f32 {
     return distance_of_roots(past_roots(level), past_roots(next_level));
 }
 
+// Unit of the colors that the gate compares, linear: twice the largest channel of candidate and history.
 fn brightness_unit(compared: vec3f, matched: vec3f, exposure: f32) -> f32 {
     let now = max(max(compared.x, compared.y), compared.z);
     let then = max(max(matched.x, matched.y), matched.z);
@@ -45,6 +48,7 @@ struct ReuseWeight {
     share: f32,
 }
 
+// Reuse weight of history at level of detail `history_lod` for a candidate at `lod`.
 fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, confidence: vec2f) -> ReuseWeight {
     let finer = clamp((lod - history_lod) * (1.0f / QUALITY_WIDTH), 0.0, 1.0) * confidence.x;
     let coarser = clamp((history_lod - lod) / COARSER_WIDTH, 0.0, 1.0) * confidence.y;
@@ -53,27 +57,32 @@ fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, confid
     return ReuseWeight(finer, finer + (alike * calm) * accumulate);
 }
 
+// Gain of relighting for one channel: observed by predicted color, blended to 1 where light did not change.
 fn gain(observed: f32, predicted: f32, changed: f32) -> f32 {
     let ratio = clamp((observed + DARK) / (predicted + DARK), GAIN.x, GAIN.y);
     let share = changed * smooth_step(0.5, 1.0, 10.0 * abs(ratio - 1.0));
     return (1.0 - share) + ratio * share;
 }
 
+// The largest gain or the smallest one, whichever is farther from 1 by its logarithm.
 fn strongest_gain(gains: vec3f) -> f32 {
     let least = min(min(gains.x, gains.y), gains.z);
     let most = max(max(gains.x, gains.y), gains.z);
     return select(most, least, least * most < 1.0);
 }
 
+// Difference at which relighting starts, in units of `root_difference`.
 fn relight_from(contrast: f32, blocks: bool, noise: f32) -> f32 {
     let relight = select(RELIGHT, RELIGHT_BLOCKS, blocks);
     return (relight.x + relight.y * contrast) + noise;
 }
 
+// Whether history may be relit: only if it is finer than the candidate by more than storage rounds levels of detail.
 fn may_relight(finer: f32, noisy: bool) -> bool {
     return finer == 1.0 || noisy;
 }
 
+// Whether candidate and history differ by more than contrast explains.
 fn is_changed(compared: vec3f, matched: vec3f, level: vec3f, next_level: vec3f) -> bool {
     return past_difference(compared, matched) > relight_from(past_contrast(level, next_level), false, 0.0);
 }
@@ -105,6 +114,7 @@ struct Matched {
     fit: f32,
 }
 
+// Blends history into the candidate by its reuse weight and its fit, the degree to which it explains the candidate.
 fn decide(e: Evidence, p: SmrParams) -> Matched {
     let reuse = reuse_weight(e.lod, e.history_lod, p.accumulate, p.noisy, e.confidence);
     var contrast = past_contrast(e.level, e.next_level);
@@ -153,10 +163,12 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
     return Matched(shown, lod, share, fit);
 }
 
+// Mean of four texels of the mip chain: color times coverage, and coverage.
 fn mip_mean(a: vec4f, b: vec4f, c: vec4f, d: vec4f) -> vec4f {
     return (a + b + c + d) * 0.25;
 }
 
+// Bilinear interpolation of the color of four texels of the mip chain, weighted by coverage.
 fn mip_bilinear(top_left: vec4f, top_right: vec4f, bottom_left: vec4f, bottom_right: vec4f, fraction: vec2f) -> vec3f {
     let t = top_left + (top_right - top_left) * fraction.x;
     let b = bottom_left + (bottom_right - bottom_left) * fraction.x;

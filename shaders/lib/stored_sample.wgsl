@@ -23,15 +23,19 @@ struct StoredSample {
     place_px: vec2f,
 }
 
+// `v` as a multiple of the step that belongs to `exponent`, an exponent coded as in a float.
 fn multiple(v: f32, exponent: u32, up: f32) -> u32 {
     // A power of two: the product is exact.
     return u32(v * bitcast<f32>((262u - exponent) << 23u) + up);
 }
 
+// Packs a color: 9 bits a channel and an exponent that the three share, each rounded to the nearest.
 fn pack_color(c: vec3f) -> u32 {
     return pack_color_by(c, 0.5);
 }
 
+// As `pack_color`, with stochastic rounding: if `up` is uniform in [0, 1), the probability of rounding up is the
+// fraction that is cut off.
 fn pack_color_by(c: vec3f, up: f32) -> u32 {
     let v = select(vec3f(0.0), min(c, vec3f(MAX_COLOR)), c > vec3f(0.0));
     let largest = max(max(v.x, v.y), v.z);
@@ -44,19 +48,23 @@ fn pack_color_by(c: vec3f, up: f32) -> u32 {
         | ((exponent - SMALLEST_EXPONENT) << 27u);
 }
 
+// Color of a packed word; finite for any word.
 fn unpack_color(word: u32) -> vec3f {
     let unit = bitcast<f32>(((word >> 27u) + (SMALLEST_EXPONENT - 8u)) << 23u);
     return vec3f(f32(word & 511u), f32((word >> 9u) & 511u), f32((word >> 18u) & 511u)) * unit;
 }
 
+// Code of a place along an axis, in pixels.
 fn pack_place(v: f32) -> u32 {
     return u32(clamp(floor(v * PLACE_STEPS + 32.5), 0.0, 63.0));
 }
 
+// Place along an axis of the code in the low six bits, in pixels.
 fn unpack_place(bits: u32) -> f32 {
     return (f32(bits & 63u) - 32.0) * (1.0f / PLACE_STEPS);
 }
 
+// Packs a sample.
 fn pack_stored(s: StoredSample) -> vec2u {
     var lod = EMPTY_LOD;
     if s.lod >= 0.0 {
@@ -71,6 +79,7 @@ fn pack_stored(s: StoredSample) -> vec2u {
     );
 }
 
+// Unpacks a sample.
 fn unpack_stored(words: vec2u) -> StoredSample {
     if is_empty(words) {
         return StoredSample(vec3f(0.0), -1.0, -1.0, vec2f(0.0));
@@ -78,14 +87,17 @@ fn unpack_stored(words: vec2u) -> StoredSample {
     return unpack_full(words);
 }
 
+// Whether a texel is empty.
 fn is_empty(words: vec2u) -> bool {
     return (words.y & 255u) == EMPTY_LOD;
 }
 
+// Word for `has_code`, with the code of a sample's disparity in its high half.
 fn code_word(words: vec2u) -> u32 {
     return (words.y << 12u) & 0xfff00000u;
 }
 
+// Unpacks the sample of a texel that is not empty.
 fn unpack_full(words: vec2u) -> StoredSample {
     let code = (words.y >> 8u) & 0xfffu;
     return StoredSample(
@@ -97,6 +109,7 @@ fn unpack_full(words: vec2u) -> StoredSample {
     );
 }
 
+// A stored sample in an image of another size.
 fn moved_stored(s: StoredSample, texel_px: vec2f, scale: vec2f, lod_shift: f32) -> StoredSample {
     if s.lod < 0.0 {
         return s;
@@ -121,17 +134,20 @@ struct AroundStored {
     cost: f32,
 }
 
+// Sums over no sample, from which `add_stored` starts.
 fn nothing_around() -> AroundStored {
     let zero = vec3f(0.0);
     let empty = StoredSample(zero, -1.0, -1.0, vec2f(0.0));
     return AroundStored(0.0, zero, 0.0, vec2f(0.0), zero, zero, zero, vec3f(MAX_COLOR), zero, empty, 1e30);
 }
 
+// Weight of a sample at squared distance `px2` from the position that is interpolated.
 fn stored_weight(px2: f32, inverse_reach: f32) -> f32 {
     let inside = max(1.0 - px2 * inverse_reach, 0.0);
     return (inside * inside) / (px2 + SOFTEN_PX2);
 }
 
+// Adds a stored sample whose texel lies `texel_px` from the position, if it is on the `same` surface.
 fn add_stored(a: AroundStored, sampled: StoredSample, texel_px: vec2f, same: bool, inverse_reach: f32) -> AroundStored {
     if !same {
         return a;
@@ -163,6 +179,7 @@ fn add_stored(a: AroundStored, sampled: StoredSample, texel_px: vec2f, same: boo
 
 const STAND_IN: f32 = 1.6;
 
+// Whether samples beside a position may replace the nearest one, which belongs to another surface.
 fn can_replace(a: AroundStored) -> bool {
     return a.weight >= STAND_IN;
 }
@@ -175,6 +192,8 @@ struct Interpolated {
     nearest: StoredSample,
 }
 
+// Color at the position: the sample that lies there, bit for bit; otherwise the value of a plane through the samples
+// around it, by weighted least squares.
 fn interpolate(a: AroundStored) -> Interpolated {
     var nearest = a.nearest;
     let away = max(abs(nearest.place_px.x), abs(nearest.place_px.y));

@@ -11,20 +11,26 @@ const UPSAMPLED_BOX_SIGMAS: vec2f = vec2f(1.5, 5.0);
 const LEAST_CLIP: f32 = 0.1;
 const CLIP_COST: f32 = 10.0;
 
+// Weight of a sample at a squared distance, in units of the kernel's reach: the main lobe of Lanczos 2, as FSR2
+// approximates it.
 fn lobe(squared: f32) -> f32 {
     let b = 1.0 - 0.25 * squared;
     return (max(1.0 - squared, 0.0) * b) * (b * b);
 }
 
+// Weight of interpolation between samples, for history of a confidence.
 fn tail(confidence: f32) -> f32 {
     let unknown = clamp(1.0 - confidence * (1.0f / TAIL_UNTIL), 0.0, 1.0);
     return (unknown * (1.0f - LEAST_TAIL) + LEAST_TAIL) * TAIL;
 }
 
+// Factor on squared distances of a pixel's own samples, for history of a confidence.
 fn narrowing(confidence: f32) -> f32 {
     return settled(confidence) * NARROWING + 1.0;
 }
 
+// Two weights of a sample: its weight as one of the pixel's own samples, and the sum of this weight and its weight for
+// interpolation.
 fn sample_weights(offset_px: vec2f, interpolation: f32, narrowed: f32) -> vec2f {
     let px2 = offset_px.x * offset_px.x + offset_px.y * offset_px.y;
     let own = lobe(px2 * narrowed);
@@ -39,6 +45,7 @@ struct SamplesAround {
     count: f32,
 }
 
+// The sums after one more sample.
 fn add_around(a: SamplesAround, centre: vec3f, sampled: vec3f, weights: vec2f) -> SamplesAround {
     let v = to_ycocg(sampled);
     return SamplesAround(
@@ -50,6 +57,7 @@ fn add_around(a: SamplesAround, centre: vec3f, sampled: vec3f, weights: vec2f) -
     );
 }
 
+// Color of the samples at the pixel.
 fn upsampled(a: SamplesAround, centre: vec3f) -> vec3f {
     return centre + a.difference * (1.0 / a.weights.y);
 }
@@ -61,6 +69,7 @@ struct Accumulated {
     kept: f32,
 }
 
+// Blends this frame's samples with history, which is clipped to their distribution.
 fn accumulate(a: SamplesAround, centre: vec3f, history: vec3f, confidence: f32, trusted: f32) -> Accumulated {
     let inverse = 1.0 / a.count;
     let variance = (a.squares * a.count - a.sum * a.sum) * (inverse * inverse);

@@ -29,10 +29,12 @@ struct Reference {
     level: u32,
 }
 
+// Code of a level of detail from 0 to 8: the nearest quarter.
 fn level_code(lod: f32) -> u32 {
     return u32(lod * 4.0 + 0.5);
 }
 
+// Packs a reference into a word: 7 bits a channel, 5 of their common exponent, 6 of the level.
 fn pack_reference(r: Reference) -> u32 {
     let c = clamp(r.color, vec3f(0.0), vec3f(MAX_HALF));
     let largest = bitcast<u32>(max(max(c.x, c.y), c.z)) + (1u << (23u - CHANNEL_BITS));
@@ -42,6 +44,7 @@ fn pack_reference(r: Reference) -> u32 {
     return m.x | (m.y << 7u) | (m.z << 14u) | ((exponent - LEAST_EXPONENT) << 21u) | (r.level << 26u);
 }
 
+// Unpacks a reference.
 fn unpack_reference(word: u32) -> Reference {
     let exponent = ((word >> 21u) & 31u) + LEAST_EXPONENT;
     let scale = bitcast<f32>((exponent + 1u - CHANNEL_BITS) << 23u);
@@ -49,10 +52,12 @@ fn unpack_reference(word: u32) -> Reference {
     return Reference(vec3f(channels) * scale, word >> 26u);
 }
 
+// Color that the gate compares with a candidate of level `level`: the reference if it has the same level.
 fn compared(candidate: vec3f, level: u32, reference: Reference) -> vec3f {
     return select(candidate, reference.color, level != NO_LEVEL && reference.level == level);
 }
 
+// Reference after a frame with a candidate of level `level`.
 fn next_reference(candidate: vec3f, level: u32, take: bool, reference: Reference) -> Reference {
     if take || (level != NO_LEVEL && reference.level != level) {
         return Reference(candidate, level);
@@ -60,6 +65,7 @@ fn next_reference(candidate: vec3f, level: u32, take: bool, reference: Reference
     return reference;
 }
 
+// Sharpened weight of a candidate: its weight by eccentricity (eq. 4), raised to a whole exponent of at least 1.
 fn sharpen(candidate_w: f32, exponent: u32) -> f32 {
     var w = candidate_w;
     for (var i = 1u; i < exponent; i++) {
@@ -70,6 +76,8 @@ fn sharpen(candidate_w: f32, exponent: u32) -> f32 {
 
 const LEAST_CANDIDATE_W: f32 = 0x1p-100f;
 
+// Weight of a candidate at level of detail `lod`: times the number of samples a pixel, `4^-lod`, to the power
+// `exponent`.
 fn at_rate(weight: f32, lod: f32, exponent: u32) -> f32 {
     return max(weight * exp2_approx(lod * (-2.0 * f32(exponent))), LEAST_CANDIDATE_W);
 }
@@ -97,6 +105,7 @@ struct Decision {
     survival: f32,
 }
 
+// Reservoir with all weights multiplied by the history confidence `trust` (`sanitize::trust`), before gate and bias.
 fn scale_by_trust(past: Past, history_trust: f32, sampler_code: u32) -> Past {
     let share = trust(history_trust);
     var log_key = past.log_key;
@@ -106,10 +115,12 @@ fn scale_by_trust(past: Past, history_trust: f32, sampler_code: u32) -> Past {
     return Past(past.color, weight(past.w_sum * share), log_key);
 }
 
+// Square root of a color's luma; 0 for negative ones.
 fn luma_root(c: vec3f) -> f32 {
     return sqrt(max(luma(c), 0.0));
 }
 
+// History's mean between reservoirs, or the nearest reservoir's color where that mean lies far from the candidate.
 fn unspread(candidate: vec3f, nearest_color: vec3f, resampled_color: vec3f) -> vec3f {
     let root = luma_root(candidate);
     let far = abs(root - luma_root(nearest_color)) + FAR_FROM_CANDIDATE;
@@ -164,6 +175,8 @@ fn decide_sample(candidate: vec3f, candidate_w: f32, past: Past, params: WrsPara
     return Decision(take, w_sum, select(old_key, new_key, take), gate_value, survival);
 }
 
+// Color that is stored and shown after `decide_sample`: the candidate or history's sample, or the mean of both by the
+// probabilities of A-Chao.
 fn combined(candidate: vec3f, candidate_w: f32, past_color: vec3f, decision: Decision, sampler_code: u32) -> vec3f {
     if sampler_code != SAMPLER_A_CHAO_MEAN || candidate_w == decision.w_sum {
         return select(past_color, candidate, decision.take);
