@@ -33,6 +33,8 @@ const AGREED: vec2f = vec2f(0.6, 6.0);
 const AGAINST: vec2f = vec2f(0.5, 0.25);
 const RELIT_ERRORS: f32 = 0.8;
 
+// Level of detail of a candidate at distance `px` from the nearest sample of a pattern of level `coarsest`: 0 at the
+// sample's own pixel.
 fn candidate_level(px: f32, coarsest: f32) -> f32 {
     return min(ln_approx(1.0 + 2.0 * px) * LOG2_E, coarsest);
 }
@@ -46,40 +48,50 @@ struct Observation {
     deviation: f32,
 }
 
+// Confidence and deviation of an observation, in sixteen bits.
 fn pack_known(confidence: f32, deviation: f32) -> u32 {
     return u32(confidence * 255.0 + 0.5) | (u32(min(deviation, MOST_DEVIATION) * DEVIATION_STEPS + 0.5) << 8u);
 }
 
+// Confidence of `pack_known`.
 fn known_confidence(word: u32) -> f32 {
     return f32(word & 255u) * (1.0f / 255.0);
 }
 
+// Deviation of `pack_known`.
 fn known_deviation(word: u32) -> f32 {
     return f32((word >> 8u) & 255u) * (1.0f / DEVIATION_STEPS);
 }
 
+// Expected difference between a sample and history of level of detail `lod` with local contrast `contrast`.
 fn expected_error(lod: f32, contrast: f32, moved: bool) -> f32 {
     let coarse = clamp(lod, 0.0, 1.0);
     let by_motion = select(0.0, CONTRAST_ERROR, moved);
     return select(STILL_ERROR, MOVED_ERROR, moved) + contrast * (by_motion + CONTRAST_ERROR * coarse);
 }
 
+// Confidence in a difference from history at level of detail `lod`, in [0, 1].
 fn lod_confidence(lod: f32) -> f32 {
     return 1.0 - clamp(lod, 0.0, 1.0);
 }
 
+// As `lod_confidence`, for noisy samples at a luma.
 fn noisy_lod_confidence(lod: f32, past: Noise, around: f32) -> f32 {
     return max(lod_confidence(lod), noise_visibility(past, around));
 }
 
+// Gain for one channel, limited.
 fn ratio(observed: f32, predicted: f32) -> f32 {
     return clamp((observed + DARK) / (predicted + DARK), SAMPLE_GAIN.x, SAMPLE_GAIN.y);
 }
 
+// Per-channel ratios of two colors, limited.
 fn ratios(observed: vec3f, predicted: vec3f) -> vec3f {
     return vec3f(ratio(observed.x, predicted.x), ratio(observed.y, predicted.y), ratio(observed.z, predicted.z));
 }
 
+// Weight of a neighbour's observation in a sample's estimate: smaller if it contradicts the sample's own gain, as at
+// the edge of a shadow.
 fn agreement(own: Observation, other: Observation, spatial: f32) -> f32 {
     let difference = root_difference(other.sampled, ratios(own.sampled, own.history) * other.history);
     let errors = min(difference, 1e6) / (AGREE_ERRORS * (own.error + other.error) + AGREE_ERROR);
@@ -97,6 +109,7 @@ struct ObservedAround {
     known: f32,
 }
 
+// Adds an observation of `weight`.
 fn add_observation(a: ObservedAround, o: Observation, weight: f32, spatial: f32) -> ObservedAround {
     return ObservedAround(
         a.sampled + o.sampled * weight,
@@ -110,19 +123,24 @@ fn add_observation(a: ObservedAround, o: Observation, weight: f32, spatial: f32)
     );
 }
 
+// Expected difference of one sample from history around it.
 fn mean_error(a: ObservedAround) -> f32 {
     return a.error * (1.0 / a.weight);
 }
 
+// Degree to which the samples around agree on a gain, in [0, 1].
 fn agreed(a: ObservedAround) -> f32 {
     return clamp((a.weight - a.known * AGREED.x) * (AGREED.y / max(a.known, 1e-6)), 0.0, 1.0);
 }
 
+// Degree to which the jitter cannot explain a mean difference, in [0, 1].
 fn not_jitter(a: ObservedAround, difference: f32) -> f32 {
     let beyond = (a.deviation - PLAIN_DEVIATION * a.weight) * (1.0 / a.weight);
     return select(1.0, smooth_step(FIT_ERRORS.x, FIT_ERRORS.y, difference / max(beyond, 1e-3)), beyond > 0.0);
 }
 
+// Gain of the light around a sample: the ratio of the means of samples and of history at the same pixels, blended to 1
+// where chance explains the difference of the means, or where other samples contradict it (`agreed`).
 fn relight(a: ObservedAround, error: f32) -> vec3f {
     if a.weight < 1e-6 {
         return vec3f(1.0);
@@ -138,34 +156,42 @@ fn relight(a: ObservedAround, error: f32) -> vec3f {
     return ratios(sampled, history) * changed + (1.0 - changed);
 }
 
+// Difference between a sample and history after a gain, in expected errors.
 fn errors_left(o: Observation, gains: vec3f) -> f32 {
     return root_difference(o.sampled, gains * o.history) / (o.error + GATE_ERROR);
 }
 
+// Degree to which history fits the samples, in [0, 1], from the mean of `errors_left`.
 fn fit(errors: f32, confidence: f32) -> f32 {
     return 1.0 - confidence * smooth_step(FIT_ERRORS.x, FIT_ERRORS.y, errors);
 }
 
+// Degree to which history after a gain fits at a sample's own pixel, in [0, 1].
 fn own_fit(own: Observation, gains: vec3f) -> f32 {
     return fit(errors_left(own, gains), own.confidence);
 }
 
+// Vote of another sample on whether history fits, for `fit_by_votes`: its weight if it contradicts history, and its
+// weight.
 fn vote(o: Observation, errors: f32, spatial: f32) -> vec2f {
     let weight = spatial * o.confidence;
     return vec2f(smooth_step(FIT_ERRORS.x, FIT_ERRORS.y, errors) * weight, weight);
 }
 
+// Fit of history around a sample by the majority of the other samples, in [0, 1].
 fn fit_by_votes(a: ObservedAround, votes: vec2f, own: f32) -> f32 {
     let against = smooth_step(AGAINST.x, AGAINST.y, votes.x / max(votes.y, 1e-6));
     return max(1.0 - min(a.known / a.spatial, 1.0) * against, own);
 }
 
+// Degree to which history fits around a sample, in [0, 1].
 fn fit_around(a: ObservedAround, left: f32, by_others: f32) -> f32 {
     let by_own = fit(left / a.weight, min(a.weight / a.spatial, 1.0));
     let share = agreed(a);
     return by_own * share + by_others * (1.0 - share);
 }
 
+// As `fit`, for noisy samples, from the difference of the means of samples and of history.
 fn mean_fit(a: ObservedAround, confidence: f32) -> f32 {
     let inverse = 1.0 / a.weight;
     let start = ((a.error * inverse) * (sqrt(a.squared) * inverse)) * MEAN_ERRORS;
@@ -187,6 +213,8 @@ struct QuadLit {
     disparities: vec4f,
 }
 
+// Four words: gain (`pack_color`); fit in 256ths in bits 0 to 8, `is_own` in bit 9, own fits in 16ths from bit 10 on;
+// disparities (`disparity_code`).
 fn pack_quad_lit(l: QuadLit) -> vec4u {
     let own = vec4u(l.own_fits * 16.0 + 0.5) << vec4u(10u, 15u, 20u, 25u);
     let fits = u32(0.5 + l.fit * 256.0) | select(0u, 512u, l.is_own) | own.x | own.y | own.z | own.w;
@@ -195,6 +223,7 @@ fn pack_quad_lit(l: QuadLit) -> vec4u {
     return vec4u(pack_color(l.gains), fits, first, second);
 }
 
+// Estimate at pixel `i` of a quad.
 fn quad_lit(words: vec4u, i: u32) -> Lit {
     return Lit(
         unpack_color(words.x),
@@ -204,6 +233,7 @@ fn quad_lit(words: vec4u, i: u32) -> Lit {
     );
 }
 
+// Word for `has_code` of pixel `i` of a quad.
 fn quad_code(words: vec4u, i: u32) -> u32 {
     let pair = select(words.z, words.w, i >= 2u);
     return select(pair & 0xffff0000u, pair << 16u, (i & 1u) == 0u);
@@ -232,6 +262,7 @@ struct Reconstructed {
     stored_share: f32,
 }
 
+// Alpha to show and alpha to store beside a result: those of its color, without light.
 fn result_alpha(r: Reconstructed, candidate: f32, history: f32, nearest: f32) -> vec2f {
     let old = select(history, nearest, r.keeps_nearest);
     // A share of 1 gives the alpha bit for bit.
@@ -240,14 +271,17 @@ fn result_alpha(r: Reconstructed, candidate: f32, history: f32, nearest: f32) ->
     return vec2f(shown, stored);
 }
 
+// Levels of detail that history loses when light doubles.
 fn worn(moved: bool, means: bool) -> f32 {
     return select(select(WORN.y, 0.0, means), WORN.x, moved);
 }
 
+// Relit color.
 fn relit(c: vec3f, gains: vec3f, lowest: vec3f, highest: vec3f) -> vec3f {
     return min(c * gains, max(c, highest + (highest - lowest) * OVERSHOOT));
 }
 
+// Blends history into the candidate, and chooses the sample to store.
 fn reconstruct(r: Reconstruction) -> Reconstructed {
     let acceptance = r.fit * r.trust;
     var lost_lod = 0.0;
@@ -282,6 +316,7 @@ struct Accumulated {
     noise: Noise,
 }
 
+// As `reconstruct`, for noisy samples: a mean of history and candidate by their numbers of samples.
 fn accumulate(r: Reconstruction, past: Noise, candidate: Noise) -> Accumulated {
     let acceptance = r.fit * r.trust;
     let bright = luma(r.history);
