@@ -273,7 +273,8 @@ pub struct Clip {
     pub kept: f32,
 }
 
-/// Clip of history to the distribution of the samples around it; `near` must contain at least one sample.
+/// Clip of history to the distribution of the samples around it; `near` must contain at least one sample. Variance
+/// clipping (Salvi 2016, "An excursion in temporal supersampling").
 #[inline]
 pub fn clip(near: Near, history: Vec3) -> Clip {
     let inverse = 1.0 / near.count;

@@ -172,7 +172,8 @@ pub fn roots_of_ycocg(y: Vec3) -> Vec3 {
     Vec3::new((outer + y.y).max(0.0), (y.x + y.z).max(0.0), (outer - y.y).max(0.0))
 }
 
-/// Clips `history` along the line to `mean` to the box of half width `extent` around `mean`.
+/// Clips `history` along the line to `mean` to the box of half width `extent` around `mean` (Karis 2014; the box of
+/// variances is Salvi's, 2016).
 #[inline]
 pub fn clip_to_box(history: Vec3, mean: Vec3, extent: Vec3) -> Vec3 {
     let d = history - mean;

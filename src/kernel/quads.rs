@@ -86,7 +86,8 @@ pub fn in_pattern(x: u32, y: u32, step: u32, offset: [u32; 2]) -> bool {
 }
 
 /// Whether a frame's pattern has the block of quad (`x`, `y`), of blocks in a checkerboard that alternates: half of the
-/// blocks a frame. `turn`: 0 or 1.
+/// blocks a frame. `turn`: 0 or 1. Checkerboard rendering (El Mansouri, "Rendering Rainbow Six Siege", GDC 2016) has
+/// this order for pixels.
 #[inline]
 pub fn in_turn(x: u32, y: u32, step: u32, turn: u32) -> bool {
     ((x / step) ^ (y / step) ^ turn) & 1 == 0
@@ -147,7 +148,8 @@ pub fn no_history_need(x: u32, y: u32, offset: [u32; 2]) -> f32 {
 
 /// Reduction of a pixel's squared error that a sample of its own is expected to bring, from history of level of detail
 /// `lod`, of `samples` samples and with the local contrast `contrast`. In squared units of
-/// [`root_difference`](super::color::root_difference).
+/// [`root_difference`](super::color::root_difference). Adaptive sampling by the expected reduction of the error is
+/// Rousselle, Knaus and Zwicker's (SIGGRAPH Asia 2011).
 #[inline]
 pub fn need(lod: f32, samples: f32, contrast: f32) -> f32 {
     let contrast = contrast.min(MOST_CONTRAST);

@@ -421,7 +421,8 @@ pub fn relit(color: Vec3, gain: Vec3, range: [Vec3; 2]) -> Vec3 {
 }
 
 /// Blends history into the candidate, and chooses the sample to store. Where history prevails, this is the stored
-/// sample, which is then not resampled; elsewhere it is the blend.
+/// sample, which is then not resampled; elsewhere it is the blend. Gain, range and fit have the place of
+/// `RectifyHistory` in FSR2 (AMD 2022), which clips history to a box of colors.
 #[inline]
 pub fn reconstruct(r: &Reconstruction) -> Reconstructed {
     let gain = r.gain;

@@ -1,4 +1,5 @@
-//! Stored samples around the previous position of a pixel's surface.
+//! Stored samples around the previous position of a pixel's surface: the step `ReprojectHistoryColor` of FSR2 (AMD
+//! 2022), which resamples history by Lanczos in every frame.
 
 use super::view::{NO_NOISE, View};
 use crate::cpu::inputs::Previous;
