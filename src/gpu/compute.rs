@@ -2,6 +2,7 @@
 //! values.
 
 use super::binding::used_by;
+use super::dump::dump;
 use super::output::format_of;
 use crate::method::Overrides;
 use crate::settings::Settings;
@@ -232,6 +233,7 @@ impl ComputeShader {
 
 impl Compiled {
     fn new(device: &Device, name: &'static str, source: &str) -> Self {
+        dump(name, source);
         let mut bindings = declared(source);
         if let Some(used) = used_by(name) {
             bindings.retain(|(number, _)| used.iter().any(|&binding| binding as u32 == *number));

@@ -12,6 +12,7 @@ pub(crate) mod binding;
 pub(crate) mod buffer;
 pub(crate) mod compute;
 mod doctor;
+mod dump;
 mod fill;
 pub(crate) mod frame;
 mod groups;

@@ -3,6 +3,7 @@
 use super::binding::Binding;
 use super::buffer::filled;
 use super::compute::Sources;
+use super::dump::dump;
 use crate::error::{FrameError, FrameValue};
 use std::collections::HashMap;
 use wgpu::{
@@ -52,7 +53,9 @@ pub(super) struct PrimePass {
 
 impl PrimePass {
     pub fn new(device: &Device, sources: &Sources) -> Self {
-        let source = wgpu::ShaderSource::Wgsl(sources.text("quad_prime_pass"));
+        let text = sources.text("quad_prime_pass");
+        dump("quad_prime_pass", &text);
+        let source = wgpu::ShaderSource::Wgsl(text);
         let label = Some("afterimage prime");
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label, source });
         Self { module, pipelines: HashMap::new() }

@@ -3,6 +3,7 @@
 mod alpha;
 mod antialiasing;
 mod bare;
+mod dump;
 mod engines;
 mod gaze;
 mod lens;
