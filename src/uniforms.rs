@@ -1,6 +1,7 @@
 //! Constants of a view for the passes of both executors.
 
 use crate::context::ContextDesc;
+use crate::convention::DepthConvention;
 use crate::frame::{Exposure, FrameInputs, Reset};
 #[cfg(feature = "cpu")]
 use crate::kernel::lens;
@@ -69,8 +70,10 @@ pub struct CameraUniforms {
     pub sky: f32,
     /// Vector, as given, of pixels that have none.
     pub no_vector: [f32; 2],
+    /// Whether these constants are of this frame's camera motion: 0 if that is not known.
+    pub is_known: u32,
     /// Padding to a multiple of 16 bytes.
-    pub unused: [u32; 2],
+    pub unused: u32,
 }
 
 impl CameraUniforms {
@@ -82,6 +85,9 @@ impl CameraUniforms {
         // Doubles: differences of nearly equal numbers.
         let double = |values: [f32; 2]| DVec2::from(values.map(f64::from));
         let [scale, offset, old_scale, old_offset] = [scale, offset, old_scale, old_offset].map(double);
+        let convention = view.depth_convention(desc);
+        let has_rays = !matches!(convention, DepthConvention::Orthographic { .. });
+        let is_known = has_rays && view.previous_from_current.is_some();
         let mut rows = view.previous_from_current.unwrap_or(IDENTITY);
         let ahead = rows[2][2];
         (0..3).for_each(|i| rows[i][i] -= 1.0);
@@ -93,9 +99,10 @@ impl CameraUniforms {
             zoom: (old_scale.recip() - scale.recip()).as_vec2().into(),
             shift_px: (offset / scale - old_offset / old_scale).as_vec2().into(),
             ahead,
-            sky: view.depth_convention(desc).sky_disparity(),
+            sky: convention.sky_disparity(),
             no_vector: desc.motion.finite_no_vector(),
-            unused: [0; 2],
+            is_known: u32::from(is_known),
+            unused: 0,
         }
     }
 

@@ -88,6 +88,11 @@ fn camera_vector(ray: vec2f, disparity: f32, motion: ViewMotion) -> vec2f {
     return clamp(vector, vec2f(-MAX_CAMERA_PX), vec2f(MAX_CAMERA_PX));
 }
 
+// Longest component of a surface's motion in the world, in pixels a frame: its `motion` without the `camera`'s.
+fn world_motion_px(motion: vec2f, camera: vec2f) -> f32 {
+    return max(abs(motion.x - camera.x), abs(motion.y - camera.y));
+}
+
 // Whether a pixel of a motion input has no vector: it is `none`, or not finite.
 fn has_no_vector(given: vec2f, none: vec2f) -> bool {
     return !(is_finite(given.x) && is_finite(given.y)) || all(given == none);

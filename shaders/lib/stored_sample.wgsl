@@ -14,6 +14,11 @@ const SOFTEN_PX2: f32 = 0.03;
 const STIFF_PX2: f32 = 0.01;
 const LOD_PX2: f32 = 0.3;
 const MOST_STEPS: f32 = 254.0;
+const MOVES: u32 = 0x80000u;
+const MOVES_PX: f32 = 0.5;
+const STARTED_PX: f32 = 2.0;
+const STOPPED_PX: f32 = 0.125;
+const UNKNOWN_MOVED_PX: f32 = 0.5;
 
 // A negative `lod` marks an empty texel.
 struct StoredSample {
@@ -72,7 +77,7 @@ fn pack_stored(s: StoredSample) -> vec2u {
     }
     let code = disparity_code(s.disparity);
     // The last code stands for an unknown disparity.
-    let disparity = select(min((code + 8u) >> 4u, 0xffeu), 0xfffu, code == 0xffffu);
+    let disparity = select(min((code + 16u) >> 5u, 0x7feu), 0x7ffu, code == 0xffffu);
     return vec2u(
         pack_color(s.color),
         lod | (disparity << 8u) | (pack_place(s.place_px.x) << 20u) | (pack_place(s.place_px.y) << 26u),
@@ -92,19 +97,29 @@ fn is_empty(words: vec2u) -> bool {
     return (words.y & 255u) == EMPTY_LOD;
 }
 
+// A packed sample of a surface that moved by `moved_px` in the world.
+fn with_motion(words: vec2u, moved_px: f32) -> vec2u {
+    return vec2u(words.x, words.y | select(0u, MOVES, moved_px > MOVES_PX));
+}
+
+// Whether a stored sample may be of a surface that moved by `moved_px` in the world.
+fn moved_alike(words: vec2u, moved_px: f32) -> bool {
+    return select(moved_px <= STARTED_PX, moved_px >= STOPPED_PX, (words.y & MOVES) != 0u);
+}
+
 // Word for `has_code`, with the code of a sample's disparity in its high half.
 fn code_word(words: vec2u) -> u32 {
-    return (words.y << 12u) & 0xfff00000u;
+    return (words.y << 13u) & 0xffe00000u;
 }
 
 // Unpacks the sample of a texel that is not empty.
 fn unpack_full(words: vec2u) -> StoredSample {
-    let code = (words.y >> 8u) & 0xfffu;
+    let code = (words.y >> 8u) & 0x7ffu;
     return StoredSample(
         unpack_color(words.x),
         // The limit keeps compilers from merging this factor with later ones.
         min(lod_value(words.y & 255u), MOST_STEPS),
-        select(disparity_value(code << 4u), -1.0, code == 0xfffu),
+        select(disparity_value(code << 5u), -1.0, code == 0x7ffu),
         vec2f(unpack_place(words.y >> 20u), unpack_place(words.y >> 26u)),
     );
 }
@@ -118,6 +133,12 @@ fn moved_stored(s: StoredSample, texel_px: vec2f, scale: vec2f, lod_shift: f32) 
     let near = max(abs(place.x), abs(place.y)) <= FARTHEST_PX;
     let lod = max(s.lod + lod_shift, 0.0);
     return StoredSample(s.color, select(max(lod, 1.0), lod, near), s.disparity, place);
+}
+
+// Packs a sample of `moved_stored` in place of the `old` one.
+fn resized_stored(old: vec2u, s: StoredSample) -> vec2u {
+    let words = pack_stored(s);
+    return vec2u(words.x, words.y | (old.y & MOVES));
 }
 
 struct AroundStored {

@@ -31,7 +31,8 @@ override VIEW: u32 = 0u;
 struct CameraUniforms {
     motion: ViewMotion,
     no_vector: vec2f,
-    unused: vec2u,
+    is_known: u32,
+    unused: u32,
 }
 
 // src/gpu/uniforms.rs: FrameUniforms, which documents the fields

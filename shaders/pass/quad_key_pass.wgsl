@@ -27,7 +27,9 @@ fn need_at(px: vec2u, view: u32) -> PixelNeed {
     if HAS_TRUST != 0u {
         is_valid = is_valid && trust(trust_at(px, view)) > 0.0;
     }
-    let codes = tap_codes(expected_disparity(view, ray_at(px, view), disparity_at(px, view)));
+    let disparity_now = disparity_at(px, view);
+    let codes = tap_codes(expected_disparity(view, ray_at(px, view), disparity_now));
+    let moved_px = moved_px_at(px, view, disparity_now, motion);
     let at = vec2f(px) + motion;
     let first = floor(at);
     var nearest_px2 = 0x1p126;
@@ -42,7 +44,7 @@ fn need_at(px: vec2u, view: u32) -> PixelNeed {
     for (var tap = 0u; tap < taps; tap++) {
         let texel = first + vec2f(vec2u(tap & 1u, tap >> 1u));
         let words = stored_words(vec2i(texel), view);
-        if !is_empty(words) && (DEPTH_TEST == 0u || has_code(code_word(words), codes)) {
+        if !is_empty(words) && may_show(words, codes, moved_px) {
             let stored = unpack_full(words);
             lowest = min(lowest, stored.color);
             highest = max(highest, stored.color);

@@ -23,7 +23,8 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: 
     }
     let position = old_position_of(id.xy);
     let at = nearest_to(position);
-    var stored = unpack_stored(textureLoad(past_stored, at, group.z, 0).xy);
+    let old = textureLoad(past_stored, at, group.z, 0).xy;
+    var stored = unpack_stored(old);
     var mean = mean_of(stored.lod);
     if MEANS != 0u {
         stored.lod = mean.lod;
@@ -33,7 +34,7 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: 
         mean.lod = moved.lod;
         moved.lod = stored_lod(mean, vec2f(0.5));
     }
-    textureStore(next_stored, id.xy, group.z, vec4u(pack_stored(moved), 0u, 0u));
+    textureStore(next_stored, id.xy, group.z, vec4u(resized_stored(old, moved), 0u, 0u));
     if NOISY != 0u {
         textureStore(next_noise, id.xy, group.z, textureLoad(past_noise, at, group.z, 0));
     }

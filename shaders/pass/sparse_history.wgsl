@@ -23,8 +23,18 @@ fn stored_words(texel: vec2i, view: u32) -> vec2u {
     return textureLoad(past_stored, clamp(texel, vec2i(0), vec2i(frame.size) - 1), view, 0).xy;
 }
 
-fn stored_at(texel: vec2i, view: u32) -> StoredSample {
-    return unpack_stored(stored_words(texel, view));
+// Whether a stored sample may show a surface whose history has one of `codes`, and which moved by `moved_px` in the
+// world.
+fn may_show(words: vec2u, codes: vec2u, moved_px: f32) -> bool {
+    return DEPTH_TEST == 0u || (has_code(code_word(words), codes) && moved_alike(words, moved_px));
+}
+
+// Motion in the world of the surface of a pixel, in pixels a frame; UNKNOWN_MOVED_PX if it is not known.
+fn moved_px_at(px: vec2u, view: u32, disparity: f32, motion: vec2f) -> f32 {
+    if frame.cameras[view].is_known == 0u || disparity < 0.0 {
+        return UNKNOWN_MOVED_PX;
+    }
+    return world_motion_px(motion, camera_vector(ray_at(px, view).xy, disparity, frame.cameras[view].motion));
 }
 
 // Disparity and motion of the surface whose history a pixel continues.
@@ -33,6 +43,8 @@ struct PixelSurface {
     motion: vec2f,
     // Disparity to store with the pixel.
     stored_disparity: f32,
+    // Motion in the world, in pixels a frame.
+    moved_px: f32,
     // Disparities of the farthest and the nearest surface that history may show.
     farthest: f32,
     nearest: f32,
@@ -48,8 +60,9 @@ struct PixelSurface {
 fn surface_of(px: vec2u, view: u32, level: u32) -> PixelSurface {
     let own = disparity_at(px, view);
     let own_motion = motion_at(px, view);
+    let own_moved_px = moved_px_at(px, view, own, own_motion);
     if ANTIALIAS == 0u || DEPTH_TEST == 0u {
-        return PixelSurface(own, own_motion, own, own, own, false, false, false);
+        return PixelSurface(own, own_motion, own, own_moved_px, own, own, false, false, false);
     }
     var nearest_disparity = own;
     var farthest_disparity = own;
@@ -78,9 +91,10 @@ fn surface_of(px: vec2u, view: u32, level: u32) -> PixelSurface {
     }
     let motion = motion_at(nearest_at, view);
     let at_edge = edge && level > 0u && has_moved(own_motion, motion);
-    var surface = PixelSurface(own, own_motion, own, own, own, false, false, at_edge);
+    var surface = PixelSurface(own, own_motion, own, own_moved_px, own, own, false, false, at_edge);
     if stands_before(own, nearest_disparity, own_motion, motion, level == 0u) {
-        surface = PixelSurface(nearest_disparity, motion, nearest_disparity, own, own, false, false, at_edge);
+        let moved_px = moved_px_at(nearest_at, view, nearest_disparity, motion);
+        surface = PixelSurface(nearest_disparity, motion, nearest_disparity, moved_px, own, own, false, false, at_edge);
     }
     if own >= 0.0 && move_together(own_motion, motion, motion_at(farthest_at, view)) {
         surface.stored_disparity = select(own, farthest_disparity, thin);
@@ -97,22 +111,30 @@ struct SparseSource {
     previous: Previous,
     // Codes of these disparities, as `tap_codes` gives them.
     codes: vec2u,
+    // Motion of the surface in the world, in pixels a frame.
+    moved_px: f32,
 }
 
 fn sparse_source(px: vec2u, view: u32, surface: PixelSurface) -> SparseSource {
     let at = reprojected(px, view, surface.motion);
-    let stored = stored_at(vec2i(at.at), view);
+    let words = stored_words(vec2i(at.at), view);
+    let stored = unpack_stored(words);
+    let alike = DEPTH_TEST == 0u || moved_alike(words, surface.moved_px);
     var previous = previous_of(px, view, surface.motion, surface.disparity, at, stored.lod, stored.disparity);
     if ANTIALIAS == 0u || !surface.mixes {
-        return SparseSource(previous, tap_codes(previous.expected));
+        if previous.verdict == VERDICT_VALID && !alike {
+            previous.verdict = VERDICT_DISOCCLUDED;
+        }
+        return SparseSource(previous, tap_codes(previous.expected), surface.moved_px);
     }
     let ray = ray_at(px, view);
     let farthest = expected_disparity(view, ray, surface.farthest);
     let nearest_expected = expected_disparity(view, ray, surface.nearest);
-    if previous.verdict == VERDICT_DISOCCLUDED && is_of_surfaces(stored.disparity, farthest, nearest_expected) {
-        previous.verdict = VERDICT_VALID;
+    if may_have_history(previous) {
+        let is_same = previous.verdict == VERDICT_VALID || is_of_surfaces(stored.disparity, farthest, nearest_expected);
+        previous.verdict = select(VERDICT_DISOCCLUDED, VERDICT_VALID, alike && is_same);
     }
-    return SparseSource(previous, tap_codes_between(farthest, nearest_expected));
+    return SparseSource(previous, tap_codes_between(farthest, nearest_expected), surface.moved_px);
 }
 
 // Whether a previous position may have history.
@@ -153,7 +175,7 @@ fn sparse_history(source: SparseSource, view: u32, needed: bool) -> SparseHistor
     for (var tap = 0u; tap < taps; tap++) {
         let texel = first + vec2i(vec2u(tap % columns, tap / columns));
         let words = stored_words(texel, view);
-        let same = !is_empty(words) && (DEPTH_TEST == 0u || has_code(code_word(words), source.codes));
+        let same = !is_empty(words) && may_show(words, source.codes, source.moved_px);
         let cost = around.cost;
         var stored = unpack_full(words);
         let lod = stored.lod;

@@ -219,7 +219,7 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candi
             next.lod = stored_lod(mean, byte_draws(random));
             words = vec2u(pack_color_by(next.color, unit_draw(random)), pack_stored(next).y);
         }
-        textureStore(next_stored, px, view, vec4u(words, 0u, 0u));
+        textureStore(next_stored, px, view, vec4u(with_motion(words, surface.moved_px), 0u, 0u));
         if NOISY != 0u {
             textureStore(next_noise, px, view, vec4u(pack_noise(noise), 0u, 0u, 0u));
         }

@@ -10,7 +10,8 @@ use crate::kernel::depth;
 use crate::kernel::depth::DisparityMap;
 use crate::kernel::noise::{Noise, candidate_noise};
 use crate::kernel::reproject::moves_alike;
-use crate::kernel::reproject::{Verdict, camera_vector, has_no_vector};
+use crate::kernel::reproject::{Verdict, camera_vector, has_no_vector, world_motion_px};
+use crate::kernel::stored_sample::UNKNOWN_MOVED_PX;
 use crate::kernel::surface::MAX_LOD;
 use crate::kernel::{lens, reproject, sanitize};
 use crate::notes::{NoteStage, Notes};
@@ -233,6 +234,16 @@ impl<'a> Inputs<'a> {
         let ray = at * Vec2::from(self.uniforms.ray_scale) + Vec2::from(self.uniforms.ray_offset);
         let disparity = self.disparity(px[0], px[1]);
         (own + camera_vector(ray, disparity, self.camera_uniforms.motion())).into()
+    }
+
+    /// Motion in the world of the surface of pixel (x, y), in pixels a frame; [`UNKNOWN_MOVED_PX`] if it is not known.
+    #[inline(always)]
+    pub fn moved_px(&self, [x, y]: [u32; 2], disparity: f32, motion: [f32; 2]) -> f32 {
+        if self.camera_uniforms.is_known == 0 || disparity < 0.0 {
+            return UNKNOWN_MOVED_PX;
+        }
+        let camera = camera_vector(self.ray(x, y).truncate(), disparity, self.camera_uniforms.motion());
+        world_motion_px(Vec2::from(motion), camera)
     }
 
     /// Noise of the candidate; `None` without a noise input.

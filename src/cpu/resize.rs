@@ -4,7 +4,7 @@ use crate::kernel::antialias::{Mean, mean_of, stored_lod};
 use crate::kernel::resample::{gather_around, resolve, sharp_sum, surface_tap, tap_codes, taps_around};
 use crate::kernel::resize::{old_position, resized_lod};
 use crate::kernel::sanitize::MAX_HALF;
-use crate::kernel::stored_sample::{StoredSample, moved_stored, pack_stored, unpack_stored};
+use crate::kernel::stored_sample::{StoredSample, moved_stored, resized_stored, unpack_stored};
 use crate::kernel::surface::{Surface, pack_surface, unpack_surface};
 use crate::parallel::collect;
 use crate::resize::Resize;
@@ -47,14 +47,16 @@ impl Resize {
             let position = self.old_position_of(x, y);
             let at = self.nearest_to(position);
             let texel_px = Vec2::new(at[0] as f32 - position[0], at[1] as f32 - position[1]);
-            let mut stored = unpack_stored(words[self.index(at)]);
+            let old = words[self.index(at)];
+            let kept = |stored| resized_stored(old, stored);
+            let mut stored = unpack_stored(old);
             if !means {
-                return pack_stored(moved_stored(stored, texel_px, scale, self.lod_shift));
+                return kept(moved_stored(stored, texel_px, scale, self.lod_shift));
             }
             let mean = mean_of(stored.lod);
             stored.lod = mean.lod;
             let moved = moved_stored(stored, texel_px, scale, self.lod_shift);
-            pack_stored(StoredSample { lod: stored_lod(Mean { lod: moved.lod, ..mean }, [0.5; 2]), ..moved })
+            kept(StoredSample { lod: stored_lod(Mean { lod: moved.lod, ..mean }, [0.5; 2]), ..moved })
         })
     }
 

@@ -144,6 +144,13 @@ pub fn camera_vector(ray: Vec2, disparity: f32, motion: ViewMotion) -> Vec2 {
     vector.clamp(Vec2::splat(-MAX_CAMERA_PX), Vec2::splat(MAX_CAMERA_PX))
 }
 
+/// Longest component of a surface's motion in the world, in pixels a frame: its `motion` without the `camera`'s
+/// ([`camera_vector`]).
+#[inline]
+pub fn world_motion_px(motion: Vec2, camera: Vec2) -> f32 {
+    (motion.x - camera.x).abs().max((motion.y - camera.y).abs())
+}
+
 /// Whether a pixel of a motion input has no vector: it is `none`, or not finite.
 #[inline]
 pub fn has_no_vector(given: Vec2, none: Vec2) -> bool {

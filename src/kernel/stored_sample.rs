@@ -45,6 +45,17 @@ pub const STIFF_PX2: f32 = 0.01;
 /// Cost of a level of detail in the choice of the sample to keep, in squared pixels.
 const LOD_PX2: f32 = 0.3;
 
+/// Bit of the second word: the surface moved in the world in the frame that stored the sample.
+pub const MOVES: u32 = 1 << 19;
+/// Motion in the world, in pixels a frame, from which on a surface is stored as one that moves.
+const MOVES_PX: f32 = 0.5;
+/// Motion at which a surface may have stood still in the previous frame, at the most.
+const STARTED_PX: f32 = 2.0;
+/// Motion at which a surface may have moved in the previous frame, at least.
+const STOPPED_PX: f32 = 0.125;
+/// Stands for a motion that is not known: the history of any surface is accepted.
+pub const UNKNOWN_MOVED_PX: f32 = 0.5;
+
 /// Stored sample of a surface point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoredSample {
@@ -120,7 +131,7 @@ pub fn pack_stored(s: StoredSample) -> [u32; 2] {
     let lod = if s.lod < 0.0 { EMPTY_LOD } else { ((s.lod * LOD_STEPS).min(MOST_STEPS) + 1.5) as u32 };
     let disparity = disparity_code(s.disparity);
     // The last code stands for an unknown disparity.
-    let disparity = if disparity == 0xffff { 0xfff } else { ((disparity + 8) >> 4).min(0xffe) };
+    let disparity = if disparity == 0xffff { 0x7ff } else { ((disparity + 16) >> 5).min(0x7fe) };
     [pack_color(s.color), lod | disparity << 8 | pack_place(s.place_px.x) << 20 | pack_place(s.place_px.y) << 26]
 }
 
@@ -136,21 +147,34 @@ pub fn is_empty(words: [u32; 2]) -> bool {
     words[1] & 255 == EMPTY_LOD
 }
 
+/// A packed sample of a surface that moved by `moved_px` in the world ([`UNKNOWN_MOVED_PX`] if that is not known).
+#[inline]
+pub fn with_motion(words: [u32; 2], moved_px: f32) -> [u32; 2] {
+    [words[0], words[1] | if moved_px > MOVES_PX { MOVES } else { 0 }]
+}
+
+/// Whether a stored sample may be of a surface that moved by `moved_px` in the world. Depth cannot tell a foot from the
+/// ground on which it stands, but one of them moved. Surfaces that begin or end to move slowly keep their history.
+#[inline]
+pub fn moved_alike(words: [u32; 2], moved_px: f32) -> bool {
+    if words[1] & MOVES != 0 { moved_px >= STOPPED_PX } else { moved_px <= STARTED_PX }
+}
+
 /// Word for [`has_code`](super::resample::has_code), with the code of a sample's disparity in its high half.
 #[inline]
 pub fn code_word(words: [u32; 2]) -> u32 {
-    (words[1] << 12) & 0xfff0_0000
+    (words[1] << 13) & 0xffe0_0000
 }
 
 /// Unpacks the sample of a texel that is not empty. The result is finite for any words.
 #[inline]
 pub fn unpack_full(words: [u32; 2]) -> StoredSample {
-    let disparity = (words[1] >> 8) & 0xfff;
+    let disparity = (words[1] >> 8) & 0x7ff;
     StoredSample {
         color: unpack_color(words[0]),
         // The limit keeps compilers from merging this factor with later ones.
         lod: lod_value(words[1] & 255).min(MOST_STEPS),
-        disparity: if disparity == 0xfff { -1.0 } else { disparity_value(disparity << 4) },
+        disparity: if disparity == 0x7ff { -1.0 } else { disparity_value(disparity << 5) },
         place_px: Vec2::new(unpack_place(words[1] >> 20), unpack_place(words[1] >> 26)),
     }
 }
@@ -167,6 +191,13 @@ pub fn moved_stored(s: StoredSample, texel_px: Vec2, scale: Vec2, lod_shift: f32
     let near = place_px.x.abs().max(place_px.y.abs()) <= FARTHEST_PX;
     let lod = (s.lod + lod_shift).max(0.0);
     StoredSample { lod: if near { lod } else { lod.max(1.0) }, place_px, ..s }
+}
+
+/// Packs a sample of [`moved_stored`] in place of the `old` one.
+#[inline]
+pub fn resized_stored(old: [u32; 2], s: StoredSample) -> [u32; 2] {
+    let words = pack_stored(s);
+    [words[0], words[1] | (old[1] & MOVES)]
 }
 
 /// Least sum of weights at which samples beside a position replace the nearest one: the weight of one sample at 0.65

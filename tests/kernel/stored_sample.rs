@@ -1,8 +1,9 @@
 //! Samples that keep their places: storage, and interpolation between them.
 
 use afterimage::kernel::stored_sample::{
-    Around, EXACT_PX, FARTHEST_PX, INVERSE_REACH, MAX_COLOR, STIFF_PX2, StoredSample, add_stored, interpolate,
-    pack_color, pack_stored, unpack_color, unpack_stored,
+    Around, EXACT_PX, FARTHEST_PX, INVERSE_REACH, MAX_COLOR, STIFF_PX2, StoredSample, UNKNOWN_MOVED_PX, add_stored,
+    code_word, interpolate, moved_alike, pack_color, pack_stored, resized_stored, unpack_color, unpack_stored,
+    with_motion,
 };
 use glam::{Mat2, Vec2, Vec3};
 use proptest::prelude::*;
@@ -57,9 +58,28 @@ proptest! {
         let sample = StoredSample { color: Vec3::ONE, lod, disparity: log_z.exp2(), place_px: Vec2::new(x, y) };
         let stored = unpack_stored(pack_stored(sample));
         prop_assert!((stored.place_px - sample.place_px).abs().max_element() <= 0.5 / 24.0 + 1e-6);
-        // Half a step of six bits, and half a step of the ten of the code.
-        prop_assert!((stored.disparity / sample.disparity - 1.0).abs() <= 1.0 / 128.0 + 1.0 / 2048.0);
+        // Half a step of five bits, and half a step of the ten of the code.
+        prop_assert!((stored.disparity / sample.disparity - 1.0).abs() <= 1.0 / 64.0 + 1.0 / 2048.0);
         prop_assert!((stored.lod - lod).abs() <= 0.5 / 7.0 + 1e-6);
+    }
+
+    /// The bit changes nothing else, and stays in an image of another size.
+    #[test]
+    fn motion_in_the_world_is_stored_beside_a_sample(
+        x in -FARTHEST_PX..FARTHEST_PX, log_z in -20.0_f32..20.0, lod in 0.0_f32..8.0, moved_px in 0.0_f32..4.0,
+        now_px in 0.0_f32..4.0,
+    ) {
+        let sample = StoredSample { color: Vec3::ONE, lod, disparity: log_z.exp2(), place_px: Vec2::splat(x) };
+        let still = pack_stored(sample);
+        let words = with_motion(still, moved_px);
+        prop_assert_eq!(unpack_stored(words), unpack_stored(still));
+        prop_assert_eq!(code_word(words), code_word(still));
+        prop_assert_eq!(resized_stored(words, sample), words);
+        // Slow changes keep history; a stop and a start do not; nothing is known to contradict an unknown motion.
+        let is_slow = (0.125..=2.0).contains(&now_px);
+        prop_assert_eq!(moved_alike(words, now_px), is_slow || (moved_px > 0.5) == (now_px > 2.0));
+        prop_assert!(moved_alike(words, UNKNOWN_MOVED_PX));
+        prop_assert!(moved_alike(with_motion(still, UNKNOWN_MOVED_PX), 0.0));
     }
 
     /// The fit is a ridge regression: it takes a part of the slope for noise. Its bias is known in closed form.

@@ -31,6 +31,7 @@ impl View<'_> {
             disparity: own,
             motion: own_motion,
             stored: own,
+            moved_px: self.inputs.moved_px([x, y], own, own_motion),
             mixed: None,
             is_silhouette: false,
             is_edge: false,
@@ -66,7 +67,8 @@ impl View<'_> {
         let is_edge = edge && level > 0 && has_moved(own_motion, nearest_px);
         let mut surface = Surroundings { is_edge, ..alone };
         if stands_before(own, nearest, own_px, nearest_px, level == 0) {
-            surface = Surroundings { disparity: nearest, motion, stored: nearest, ..surface };
+            let moved_px = self.inputs.moved_px(nearest_at, nearest, motion);
+            surface = Surroundings { disparity: nearest, motion, stored: nearest, moved_px, ..surface };
         }
         if own >= 0.0 && move_together(own_px, nearest_px, farthest_px) {
             let stored = if thin { farthest } else { own };

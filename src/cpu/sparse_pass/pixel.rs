@@ -13,7 +13,7 @@ use crate::kernel::noise::pack_noise;
 use crate::kernel::reproject::Verdict;
 use crate::kernel::sanitize;
 use crate::kernel::sparse_smr::{Reconstruction, accumulate, reconstruct, relit, result_alpha, worn};
-use crate::kernel::stored_sample::{StoredSample, pack_stored};
+use crate::kernel::stored_sample::{StoredSample, pack_stored, with_motion};
 use crate::notes::{NoteStage, Notes};
 use crate::stats::FrameStats;
 use glam::{Vec2, Vec3};
@@ -153,6 +153,7 @@ impl LitView<'_> {
             motion: surface.motion,
         };
         let stored = if view.antialiases { view.packed_mean([x, y], stored, mean) } else { pack_stored(stored) };
+        let stored = with_motion(stored, surface.moved_px);
         Pixel { output, surface: stored, noise: pack_noise(noise), alpha, trace }
     }
 }

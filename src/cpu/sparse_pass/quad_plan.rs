@@ -19,9 +19,9 @@ use crate::kernel::quads::{
     ENOUGH_SAMPLES, IN_FOVEA, IN_MIDDLE, IN_PERIPHERY, KEYS, MOST_PATHS, WHOLE, acuity, asked_px, in_pattern, in_turn,
     known_samples, need, no_history_need, path_key, paths, place_in_quad, quad_key, region, share_in_block, threshold,
 };
-use crate::kernel::resample::{has_code, tap_codes};
+use crate::kernel::resample::tap_codes;
 use crate::kernel::sanitize;
-use crate::kernel::stored_sample::{code_word, is_empty, unpack_full};
+use crate::kernel::stored_sample::{is_empty, unpack_full};
 use crate::method::HistoryLayout;
 use crate::notes::NoNotes;
 use glam::Vec3;
@@ -176,7 +176,9 @@ impl View<'_> {
         if inputs.nearest(x, y, motion, &mut NoNotes).is_err() || !trusted {
             return None;
         }
-        let codes = tap_codes(inputs.expected_disparity(x, y, inputs.disparity(x, y)));
+        let disparity = inputs.disparity(x, y);
+        let codes = tap_codes(inputs.expected_disparity(x, y, disparity));
+        let moved_px = inputs.moved_px([x, y], disparity, motion);
         let at = [x as f32 + motion[0], y as f32 + motion[1]];
         let first = at.map(|v| v.floor());
         let mut best = (f32::MAX, -1.0, ENOUGH_SAMPLES);
@@ -186,7 +188,7 @@ impl View<'_> {
         for tap in 0..4 {
             let [tx, ty] = [first[0] + (tap & 1) as f32, first[1] + (tap >> 1) as f32];
             let words = self.stored_words(tx as i32, ty as i32);
-            if is_empty(words) || (inputs.tests_depth() && !has_code(code_word(words), codes)) {
+            if is_empty(words) || !self.may_show(words, codes, moved_px) {
                 continue;
             }
             let stored = unpack_full(words);

@@ -10,7 +10,7 @@ use crate::kernel::reproject::Verdict;
 use crate::kernel::resample::{has_code, tap_codes, tap_codes_between};
 use crate::kernel::stored_sample::{
     Around, EXACT_PX, INVERSE_MEAN_REACH, INVERSE_REACH, Interpolated, StoredSample, add_stored, can_replace,
-    code_word, interpolate, is_empty, stored_weight, unpack_full, unpack_stored,
+    code_word, interpolate, is_empty, moved_alike, stored_weight, unpack_full, unpack_stored,
 };
 use crate::notes::{NoteStage, Notes};
 use glam::{Vec2, Vec3};
@@ -22,6 +22,8 @@ pub(super) struct Surroundings {
     pub motion: [f32; 2],
     /// Disparity to store with the pixel.
     pub stored: f32,
+    /// Motion in the world, in pixels a frame.
+    pub moved_px: f32,
     /// Disparities of the farthest and the nearest surface around the pixel, if history may show any of them.
     pub mixed: Option<[f32; 2]>,
     /// Whether history is the mean of several surfaces, of which a sample shows one.
@@ -35,6 +37,7 @@ impl Surroundings {
     pub fn note(&self, notes: &mut impl Notes) {
         notes.note(NoteStage::Reprojection, "motion of the surface that is continued", self.motion, "px");
         notes.note(NoteStage::Reprojection, "its disparity now", self.disparity, "1/distance");
+        notes.note(NoteStage::Reprojection, "its motion in the world", self.moved_px, "px a frame");
         notes.note(NoteStage::Reprojection, "silhouette, history is a mean of surfaces", self.is_silhouette, "");
         notes.note(NoteStage::Reprojection, "moving edge of a surface", self.is_edge, "");
     }
@@ -47,6 +50,8 @@ pub(super) struct Source {
     pub is_same: bool,
     /// Codes of the disparities that history may have.
     pub codes: [u32; 2],
+    /// Motion of the surface in the world, in pixels a frame.
+    pub moved_px: f32,
 }
 
 /// History at a previous position.
@@ -75,6 +80,13 @@ impl View<'_> {
         self.alpha.as_ref().map(|alpha| alpha.past[at])
     }
 
+    /// Whether a stored sample may show a surface whose history has one of `codes`, and which moved by `moved_px` in
+    /// the world.
+    #[inline(always)]
+    pub(super) fn may_show(&self, words: [u32; 2], codes: [u32; 2], moved_px: f32) -> bool {
+        !self.inputs.tests_depth() || (has_code(code_word(words), codes) && moved_alike(words, moved_px))
+    }
+
     /// Noise of a stored sample, in this frame's exposure.
     #[inline(always)]
     pub(super) fn stored_noise(&self, [x, y]: [i32; 2]) -> Noise {
@@ -94,26 +106,34 @@ impl View<'_> {
         surface: &Surroundings,
         notes: &mut impl Notes,
     ) -> Result<Source, Verdict> {
-        let mut found = 0.0;
+        let moved_px = surface.moved_px;
+        let (mut found, mut alike) = (0.0, false);
         let stored = |[qx, qy]: [u32; 2]| {
-            let stored = unpack_stored(self.stored_words(qx as i32, qy as i32));
-            found = stored.disparity;
+            let words = self.stored_words(qx as i32, qy as i32);
+            let stored = unpack_stored(words);
+            (found, alike) = (stored.disparity, !self.inputs.tests_depth() || moved_alike(words, moved_px));
             [stored.lod, stored.disparity]
         };
         let (previous, is_same) = self.inputs.reprojected(x, y, surface.motion, surface.disparity, stored, notes)?;
+        notes.note(NoteStage::Reprojection, "the texel's surface moved alike in the world", alike, "");
         let Some(mixed) = surface.mixed else {
-            return Ok(Source { previous, is_same, codes: tap_codes(previous.expected) });
+            let codes = tap_codes(previous.expected);
+            return Ok(Source { previous, is_same: is_same && alike, codes, moved_px });
         };
         let [farthest, nearest] = mixed.map(|disparity| self.inputs.expected_disparity(x, y, disparity));
-        let is_same = is_same || is_of_surfaces(found, farthest, nearest);
+        let is_same = alike && (is_same || is_of_surfaces(found, farthest, nearest));
         notes.note(NoteStage::Reprojection, "one of the surfaces around, which move together", is_same, "");
-        Ok(Source { previous, is_same, codes: tap_codes_between(farthest, nearest) })
+        Ok(Source { previous, is_same, codes: tap_codes_between(farthest, nearest), moved_px })
     }
 
     /// History at a previous position, in this frame's exposure. At a silhouette the nearest stored sample may belong
     /// to another surface (`is_same` is false). Samples beside it then replace it if they are near enough.
     #[inline(always)]
-    pub(super) fn interpolated<N: Notes>(&self, Source { previous, is_same, codes }: &Source, notes: &mut N) -> Found {
+    pub(super) fn interpolated<N: Notes>(
+        &self,
+        Source { previous, is_same, codes, moved_px }: &Source,
+        notes: &mut N,
+    ) -> Found {
         // The place of a mean may lie anywhere around its texel's centre, so that the eight texels around the nearest
         // one also count.
         let (columns, [x, y]) = match self.antialiases {
@@ -129,7 +149,7 @@ impl View<'_> {
         for tap in 0..columns * columns {
             let (tx, ty) = (x + tap % columns, y + tap / columns);
             let words = self.stored_words(tx, ty);
-            let same = !is_empty(words) && (!self.inputs.tests_depth() || has_code(code_word(words), *codes));
+            let same = !is_empty(words) && self.may_show(words, *codes, *moved_px);
             let texel_px = Vec2::new(tx as f32 - previous.at[0], ty as f32 - previous.at[1]);
             let cost = around.cost;
             let mut stored = unpack_full(words);

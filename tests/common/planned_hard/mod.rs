@@ -1,7 +1,8 @@
-//! Hard cases of light on frames shaded by quads, H109 to H112: laws that hold on either executor.
+//! Hard cases of frames shaded by quads, H109 to H113: laws that hold on either executor.
 
 pub mod old_light;
 pub mod other_surfaces;
+pub mod sliding;
 pub mod still;
 
 use crate::depth_hard::{Make, Steps};
@@ -17,6 +18,7 @@ macro_rules! planned_laws {
             h110_lamps_change_no_wall: "H110", lamps_and_signs;
             h111_moire_is_no_change_of_light: "H111", moire;
             h112_a_still_wall_stays_sharp: "H112", still_wall;
+            h113_what_slides_leaves_nothing_behind: "H113", sliding;
         }
     };
 }
@@ -35,6 +37,7 @@ macro_rules! planned_tables {
             h109_old_light_in_short_and_long_means: "H109", lengths_of_means;
             h110_lamps_and_signs_of_many_kinds_change_no_wall: "H110", lamps_table;
             h111_moire_of_other_stripes_is_no_change_of_light: "H111", moire_table;
+            h113_squares_of_many_speeds_leave_nothing_behind: "H113", sliding_table;
         }
     };
 }
@@ -42,6 +45,8 @@ macro_rules! planned_tables {
 pub(crate) use planned_tables;
 
 pub const SIZE: [u32; 2] = [64, 36];
+/// Of all that is seen.
+pub const DISTANCE: f32 = 5.0;
 
 /// smr on quads, of which about a `share` is shaded everywhere.
 pub fn context(make: Make<'_>, size: [u32; 2], share: f32, antialias: bool) -> Option<Box<dyn Steps>> {
@@ -65,7 +70,7 @@ pub fn frame(size: [u32; 2], jitter_px: [f32; 2], color: impl Fn([f32; 2]) -> [f
     View::still(Image::from_fn(size, at), [0.0; 2]).with(|view| {
         view.facts.gaze = Gaze::Lost;
         view.facts.jitter_px = jitter_px;
-        view.depth = Some(Image::filled(size, 5.0));
+        view.depth = Some(Image::filled(size, DISTANCE));
     })
 }
 

@@ -335,10 +335,3 @@ pub fn old_light(make: Make<'_>) -> Option<String> {
     }
     all_hold(make, &FEW)
 }
-
-pub fn probe(make: Make<'_>) {
-    for case in [STEPS[0], FAST[3], LENGTHS[2], STEPS[4], LENGTHS[4]] {
-        let left = left_by(make, &case, |_, _| ()).unwrap();
-        println!("PROBE {:?} seen {}: {left:?}", case.change, case.seen);
-    }
-}

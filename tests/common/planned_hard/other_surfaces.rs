@@ -171,10 +171,3 @@ pub fn lamps_and_signs(make: Make<'_>) -> Option<String> {
     }
     all_hold(make, &FEW)
 }
-
-pub fn probe(make: Make<'_>) {
-    for case in [CASES[7], CASES[8], CASES[6]] {
-        let off = off_by(make, &case, |_, _| ()).unwrap();
-        println!("PROBE {:?}: {:?}", case.light, Case::worst(&off));
-    }
-}

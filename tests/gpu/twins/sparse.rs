@@ -65,6 +65,12 @@ pub(super) fn color(d: &mut Draws) -> [u32; 3] {
     [0; 3].map(|_| scaled(d, -14, 6))
 }
 
+/// Motions in the world, at the limits and beside them.
+fn moved_px() -> Vec<u32> {
+    let beside = |v: f32| [v.next_down(), v, v.next_up()];
+    floats(&[[0.0, 0.3, 1000.0], beside(0.125), beside(0.5), beside(2.0)].concat())
+}
+
 const COLOR: Word = Of(|d, row| row.extend(color(d)));
 
 fn push_stored(d: &mut Draws, row: &mut Vec<u32>) {
@@ -155,6 +161,12 @@ pub const PROBES: &[Probe] = &[
     })),
     probe!(stored_sample::unpack_stored, |rows| rows.each(&[Bits, Bits])),
     probe!(stored_sample::code_word, |rows| rows.each(&[Bits, Bits])),
+    probe!(stored_sample::with_motion, |rows| rows.cross(&[&[0, !0], &[0, 1 << 19, !0], &moved_px()])),
+    probe!(stored_sample::moved_alike, |rows| rows.cross(&[&[0], &[0, 1 << 19, !0, !(1 << 19)], &moved_px()])),
+    probe!(stored_sample::resized_stored, |rows| rows.random(|d, row| {
+        row.extend([d.bits(), d.bits()]);
+        push_stored(d, row);
+    })),
     probe!(stored_sample::moved_stored, |rows| {
         let (by, zoom) = (F(-0.5, 0.5), F(0.5, 2.0));
         rows.each(&[Of(push_stored), by, by, zoom, zoom, F(-1.0, 1.0)])

@@ -108,6 +108,7 @@ pub const PROBES: &[Probe] = &[
         };
         rows.random(|d, row| camera(d, row, 0.01)).random_of("large turns", |d, row| camera(d, row, 1.5))
     }),
+    probe!(reproject::world_motion_px, |rows| rows.each(&[F(-9.0, 9.0); 4]).each(&[Scaled(-20, 20); 4])),
     probe!(reproject::has_no_vector, |rows| {
         let none = floats(&[0.0, -1.0, 0.5, f32::MAX]);
         let given = [any(), none.clone()].concat();
