@@ -1,9 +1,10 @@
-//! Hard cases of frames shaded by quads, H109 to H113: laws that hold on either executor.
+//! Hard cases of frames shaded by quads, H109 to H114: laws that hold on either executor.
 
 pub mod old_light;
 pub mod other_surfaces;
 pub mod sliding;
 pub mod still;
+pub mod turning;
 
 use crate::depth_hard::{Make, Steps};
 use crate::images::View;
@@ -19,6 +20,7 @@ macro_rules! planned_laws {
             h111_moire_is_no_change_of_light: "H111", moire;
             h112_a_still_wall_stays_sharp: "H112", still_wall;
             h113_what_slides_leaves_nothing_behind: "H113", sliding;
+            h114_shadows_that_turn_leave_no_old_light: "H114", turning;
         }
     };
 }
@@ -38,6 +40,7 @@ macro_rules! planned_tables {
             h110_lamps_and_signs_of_many_kinds_change_no_wall: "H110", lamps_table;
             h111_moire_of_other_stripes_is_no_change_of_light: "H111", moire_table;
             h113_squares_of_many_speeds_leave_nothing_behind: "H113", sliding_table;
+            h114_shadows_of_many_speeds_leave_no_old_light: "H114", turning_table;
         }
     };
 }

@@ -1,10 +1,11 @@
-//! Light on frames shaded by quads: hard cases H109 to H113.
+//! Light on frames shaded by quads: hard cases H109 to H114.
 
 use super::depth::run_law;
 use crate::planned_hard::old_light::*;
 use crate::planned_hard::other_surfaces::*;
 use crate::planned_hard::sliding::*;
 use crate::planned_hard::still::*;
+use crate::planned_hard::turning::*;
 use crate::planned_hard::*;
 
 planned_laws!(Cpu, run_law);

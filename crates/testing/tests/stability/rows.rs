@@ -177,4 +177,6 @@ pub const ROWS: [Row; 107] = [
     row("H110", "quads: lamps and signs go on or off on a wall", "wall unchanged from the next frame on", BOTH),
     row("H111", "quads: still stripes of 1.05 and 2.1 px, jittered", "changes by at most 0.1 a frame of 0.8", BOTH),
     row("H112", "quads: a still, textured wall, jittered", "55.5 dB at a quarter of the pixels, 51.5 at a tenth", BOTH),
+    row("H113", "quads: squares that slide over a wall, at its depth", "at most 0.4 px a row of them left, 8 frames", BOTH),
+    row("H114", "quads: two lights whose shadows turn", "old light in at most 1 % of the pixels", BOTH),
 ];
