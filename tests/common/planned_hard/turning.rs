@@ -1,5 +1,5 @@
-//! H114: two lights whose shadows turn. Edges cross each pixel slowly, from changing sides, and its mean gets samples of
-//! all their light.
+//! H114: two lights whose shadows turn. Edges cross each pixel slowly, from changing sides, and its mean gets samples
+//! of all their light.
 
 use super::{SIZE, context, frame, jitter_px, wall};
 use crate::depth_hard::{Color, Make};
@@ -80,8 +80,8 @@ const fn case(share: f32, antialias: bool, turns: [f32; 2], most_percent: f32) -
     Case { share, antialias, turns, most_percent }
 }
 
-/// At a tenth of the pixels two miss the bar of 1 %: edges of both lights cross a pixel between its samples, so that its
-/// mean tolerates both.
+/// At a tenth of the pixels two miss the bar of 1 %: edges of both lights cross a pixel between its samples, so that
+/// its mean tolerates both.
 const CASES: [Case; 6] = [
     case(0.25, true, [0.004, -0.006], 1.0),
     case(0.25, true, [0.01, 0.013], 1.0),
