@@ -38,25 +38,30 @@ fi
 
 # Messages of panics name files, of this machine without this.
 home="${CARGO_HOME:-$HOME/.cargo}"
-remapped="--remap-path-prefix=$home/registry/src= --remap-path-prefix=$target= --remap-path-prefix=$(realpath ../..)="
+copy="$target/compact"
+remapped="--remap-path-prefix=$home/registry/src= --remap-path-prefix=$target= --remap-path-prefix=$copy="
 bindgen=(env -u RUSTC -u LD_LIBRARY_PATH -u RUSTC_BOOTSTRAP CARGO_PROFILE_RELEASE_OPT_LEVEL=1 CARGO_PROFILE_RELEASE_LTO=off
     CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 cargo run --locked --release --package afterimage-web-bindgen --)
 
-# The page closes no depth buffer, asks no doctor, offers no taau, and opens new contexts instead of resizing them.
-shopt -s extglob
-pass=../../shaders/pass
-lib=../../shaders/lib
+# The sources that the page is made of, in a copy whose shaders are compact: without comments, and without those that it
+# never asks for, because it closes no depth buffer, asks no doctor, offers no taau, and opens new contexts instead of
+# resizing them.
+rm -rf "$copy"
+mkdir -p "$copy/crates/web"
+cp -pr ../../{Cargo.toml,README.md,examples,shaders,src,tests} "$copy"
+cp -pr Cargo.toml Cargo.lock bindgen src shaders "$copy/crates/web"
+shopt -s extglob nullglob
 unused='@(quad_prime_pass|doctor*|resize*|taau*).wgsl'
-shaders=(shaders/*.wgsl ../../shaders/foveation/*.wgsl $lib/!($unused) $pass/!($unused))
-shaders+=(--without $lib/$unused $pass/$unused)
+for shader in "$copy"/shaders/@(lib|pass)/$unused; do : >"$shader"; done
+find "$copy" -name '*.wgsl' -exec "${bindgen[@]}" compact {} +
 
 mkdir -p "$to"
 # library NAME OPTIONS...: a library and its bindings.
 library() {
     local name=$1
     shift
-    RUSTFLAGS="$remapped" cargo build --locked --release --target $wasm "${std[@]}" "$@"
-    "${bindgen[@]}" "$target/$wasm/release/afterimage_web.wasm" "$to" "$name" "${shaders[@]}"
+    (cd "$copy/crates/web" && RUSTFLAGS="$remapped" cargo build --locked --release --target $wasm "${std[@]}" "$@")
+    "${bindgen[@]}" "$target/$wasm/release/afterimage_web.wasm" "$to" "$name"
 }
 library afterimage_web
 library compare --features compare

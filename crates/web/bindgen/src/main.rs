@@ -1,6 +1,5 @@
-//! `bindgen LIBRARY.wasm FOLDER NAME SHADERS... [--without SHADERS...]`: the WebAssembly that a browser loads, and the
-//! JavaScript that calls it. `SHADERS`: files whose texts are in the library; behind `--without` those that the page
-//! never asks for, which weigh nothing.
+//! `bindgen LIBRARY.wasm FOLDER NAME`: the WebAssembly that a browser loads, and the JavaScript that calls it.
+//! `bindgen compact SHADERS...`: rewrites files of shaders, so that they weigh little in a library.
 
 use std::env::args;
 use std::path::Path;
@@ -10,45 +9,36 @@ use wasm_bindgen_cli_support::Bindgen;
 
 fn main() -> ExitCode {
     let words: Vec<_> = args().skip(1).collect();
-    let [library, folder, name, shaders @ ..] = words.as_slice() else {
-        eprintln!("expected: bindgen LIBRARY.wasm FOLDER NAME SHADERS...");
-        return ExitCode::from(2);
+    let result = match words.as_slice() {
+        [word, shaders @ ..] if word == "compact" => compact_files(shaders),
+        [library, folder, name] => write(library, Path::new(folder), name),
+        _ => {
+            eprintln!("expected: bindgen LIBRARY.wasm FOLDER NAME, or bindgen compact SHADERS...");
+            return ExitCode::from(2);
+        }
     };
-    match write(library, Path::new(folder), name, shaders) {
+    match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("{library}: {error:#}");
+            eprintln!("{}: {error:#}", words[0]);
             ExitCode::FAILURE
         }
     }
 }
 
-fn write(library: &str, folder: &Path, name: &str, shaders: &[String]) -> Result<(), Box<dyn Error>> {
+fn compact_files(shaders: &[String]) -> Result<(), Box<dyn Error>> {
+    for shader in shaders {
+        let text = fs::read(shader).map_err(|error| format!("{shader}: {error}"))?;
+        fs::write(shader, compact(&text)).map_err(|error| format!("{shader}: {error}"))?;
+    }
+    Ok(())
+}
+
+fn write(library: &str, folder: &Path, name: &str) -> Result<(), Box<dyn Error>> {
     let mut bindgen = Bindgen::new();
     bindgen.input_path(library).typescript(false).remove_name_section(true).remove_producers_section(true);
     bindgen.omit_default_module_path(false).out_name(name);
-    bindgen.web(true)?.generate(folder)?;
-    let file = folder.join(format!("{name}_bg.wasm"));
-    let mut wasm = fs::read(&file)?;
-    let used = shaders.iter().position(|word| word == "--without").unwrap_or(shaders.len());
-    for shader in &shaders[..used] {
-        let text = fs::read(shader)?;
-        replace(&mut wasm, &text, &compact(&text));
-    }
-    for shader in shaders.iter().skip(used + 1) {
-        let text = fs::read(shader)?;
-        replace(&mut wasm, &text, &[]);
-    }
-    Ok(fs::write(file, wasm)?)
-}
-
-/// `text` in `wasm` becomes the shorter `by`; line ends behind it keep its length.
-fn replace(wasm: &mut [u8], text: &[u8], by: &[u8]) {
-    if let Some(start) = wasm.windows(text.len()).position(|window| window == text) {
-        let (new, rest) = wasm[start..start + text.len()].split_at_mut(by.len());
-        new.copy_from_slice(by);
-        rest.fill(b'\n');
-    }
+    Ok(bindgen.web(true)?.generate(folder)?)
 }
 
 /// A shader's text without comments, indentation, and spaces beside punctuation. The library itself reads lines of
