@@ -48,7 +48,7 @@ run() {
 
     step "a whole frame"
     for size in 1920x1080 3840x2160; do
-        limited 60 "$afterimage" run builtin:courtyard --source raster --foveation quads --size $size --frames 6 \
+        limited 60 "$afterimage" run builtin:courtyard --source raster --foveation planned --size $size --frames 6 \
             --method none,smr,taau --backend gpu --no-flip --no-jod --reference-samples 1 --out "$work/whole" |
             tee "$work/whole_$size.txt"
         rm -rf "$work/whole"

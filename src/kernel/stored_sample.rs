@@ -9,11 +9,12 @@
 //! | 0 | 0-26 | red, green, blue: 9 bits each, multiples of 2^(exponent - 24) |
 //! | 0 | 27-31 | exponent that the three share |
 //! | 1 | 0-7 | code of the level of detail, in steps as in [`surface`](super::surface); 0: empty |
-//! | 1 | 8-19 | disparity: [`disparity_code`] without its last four bits |
+//! | 1 | 8-18 | disparity: [`disparity_code`] without its last five bits |
+//! | 1 | 19 | whether the surface moved in the world ([`with_motion`]) |
 //! | 1 | 20-25 | x of the place, in 1/24 pixel, plus 32 |
 //! | 1 | 26-31 | y of the place |
 //!
-//! Packing an unpacked sample gives the same words. All zeros are an empty texel.
+//! Packing an unpacked sample gives the same words, but for bit 19. All zeros are an empty texel.
 
 use super::pack::{disparity_code, disparity_value};
 use super::surface::{EMPTY_LOD, LOD_STEPS, lod_value};

@@ -78,9 +78,9 @@ impl Part {
         let [width, height] = self.size;
         let planned = match (self.is_planned, self.foveation == Foveation::uniform(0.25)) {
             (false, _) => format!("--rate-mid {rate_mid} --rate-far {rate_far}"),
-            (true, true) => "--foveation quads --share 25 --jitter halton --reference-samples 8".into(),
+            (true, true) => "--foveation planned --share 25 --jitter halton --reference-samples 8".into(),
             (true, false) => format!(
-                "--foveation quads --rate-mid {rate_mid} --rate-far {rate_far} --budget {} --jitter halton \
+                "--foveation planned --rate-mid {rate_mid} --rate-far {rate_far} --budget {} --jitter halton \
                  --reference-samples 8",
                 100.0 * budget
             ),
@@ -144,7 +144,7 @@ impl Part {
             input: &input,
             fps: FPS,
             seed: 0,
-            simulator: if self.is_planned { "quads" } else { "mip" },
+            simulator: if self.is_planned { "planned" } else { "mip" },
             geometry: None,
             scale: None,
             gaze: &gaze,

@@ -362,7 +362,7 @@ fn a_scene_is_rendered_foveated_for_the_gaze_and_nothing_is_read_back() {
     let folder = tempfile::tempdir().unwrap();
     let tool = |words: &[&str]| display.tool(folder.path(), words);
     let pixels = |path: &str| image::open(folder.path().join(path)).unwrap().into_rgb8();
-    for (foveation, jitter, methods) in [("quads", "halton", "taau,smr"), ("layers", "off", "none,smr")] {
+    for (foveation, jitter, methods) in [("planned", "halton", "taau,smr"), ("layers", "off", "none,smr")] {
         let scene = ["builtin:cubes", "--size", "320x180", "--camera", "walk", "--frames", "4"];
         let regions = ["--foveation", foveation, "--fovea", "12", "--mid", "30", "--rate-mid", "2", "--rate-far", "4"];
         let common = [&scene[..], &regions, &["--jitter", jitter]].concat();
@@ -371,7 +371,7 @@ fn a_scene_is_rendered_foveated_for_the_gaze_and_nothing_is_read_back() {
         assert!(said.starts_with("4 frames, 0 read back\n"), "{said}");
         let run = "run --source raster --backend gpu --reference-samples 1 --no-flip --no-jod --out run --method";
         let run: Vec<&str> = run.split(' ').chain([methods]).collect();
-        let geometry: &[&str] = if foveation == "quads" { &[] } else { &["--geometry", "samples"] };
+        let geometry: &[&str] = if foveation == "planned" { &[] } else { &["--geometry", "samples"] };
         let psnr_db = |gaze: &str| {
             tool(&[&run[..], &common, geometry, &["--gaze", gaze]].concat());
             let (left, right) = methods.split_once(',').unwrap();
@@ -386,7 +386,7 @@ fn a_scene_is_rendered_foveated_for_the_gaze_and_nothing_is_read_back() {
         let same = psnr_db("200,60");
         say(&format!("{foveation}, jitter {jitter}, {methods}: {same:.1} dB of run's pictures"));
         assert!(same > 45.0);
-        if foveation == "quads" {
+        if foveation == "planned" {
             // Planted: another gaze.
             let planted = psnr_db("120,110");
             say(&format!("for another gaze {planted:.1} dB"));
@@ -444,7 +444,7 @@ fn what_it_cannot_show_is_refused_before_any_window() {
         (&["still.png", "--fovea=-1"], "fovea"),
         (&["still.png", "--gaze", "none.csv"], "none.csv"),
         (&["analytic:still", "--jitter", "halton"], "of scenes only"),
-        (&["builtin:courtyard", "--foveation", "mip", "--jitter", "halton"], "--foveation quads"),
+        (&["builtin:courtyard", "--foveation", "mip", "--jitter", "halton"], "--foveation planned"),
     ];
     for (words, expected) in refused {
         let out = tool().arg("view").args(words).current_dir(folder.path()).output().unwrap();

@@ -16,9 +16,9 @@ const HEADING: &str = "Foveation";
 /// Foveation simulator, and the resolution by eccentricity.
 #[derive(Args, Clone, Debug)]
 pub struct FoveationArgs {
-    /// How frames are foveated. quads: one full-rate view, of which each method chooses the pixels that are shaded;
+    /// How frames are foveated. planned: one full-rate view, of which each method chooses the pixels that are shaded;
     /// given frames simulate it. mip, gauss and block simulate blur on full-rate frames; layers and uniform render
-    /// views of rasterised scenes. Default: quads for scenes without --sampling, else mip
+    /// views of rasterised scenes. Default: planned for scenes without --sampling, else mip
     #[arg(long = "foveation", value_parser = FilterParser, help_heading = HEADING)]
     pub filter: Option<FilterName>,
     /// Diameter of the full-rate region, degrees
@@ -30,23 +30,23 @@ pub struct FoveationArgs {
     /// Width of the linear blend outside each radius, degrees
     #[arg(long, default_value_t = 1.0, value_name = "DEG", help_heading = HEADING)]
     pub blend: f32,
-    /// Block edge in the middle region, pixels, a power of two; quads: 2 to 8; default: 8, for quads 4, at
+    /// Block edge in the middle region, pixels, a power of two; planned: 2 to 8; default: 8, for planned 4, at
     /// most --rate-far
     #[arg(long, value_name = "N", help_heading = HEADING)]
     pub rate_mid: Option<u32>,
-    /// Block edge beyond the middle region, pixels, a power of two; quads: 2 to 8; default: 16, for quads 8, at least
+    /// Block edge beyond the middle region, pixels, a power of two; planned: 2 to 8; default: 16, for planned 8, at least
     /// --rate-mid
     #[arg(long, value_name = "N", help_heading = HEADING)]
     pub rate_far: Option<u32>,
-    /// With --foveation quads: pixels a frame that smr shades by need, beside the even pattern, percent, 0 to 100;
+    /// With --foveation planned: pixels a frame that smr shades by need, beside the even pattern, percent, 0 to 100;
     /// default: 2.5
     #[arg(long, value_parser = parse_percent, value_name = "PERCENT", help_heading = HEADING)]
     pub budget: Option<f32>,
-    /// With --foveation quads: shades this share of the pixels everywhere alike, without a gaze, percent, 0 to 100; a
+    /// With --foveation planned: shades this share of the pixels everywhere alike, without a gaze, percent, 0 to 100; a
     /// temporal upscaler, for example with 25. --fovea, --mid, the rates and --budget follow from it
     #[arg(long, value_parser = parse_percent, value_name = "PERCENT", conflicts_with_all = ["fovea", "mid", "rate_mid", "rate_far", "budget"], help_heading = HEADING)]
     pub share: Option<f32>,
-    /// With --foveation quads: shades one pixel of a chosen quad outside the fovea, not all four; traced frames always
+    /// With --foveation planned: shades one pixel of a chosen quad outside the fovea, not all four; traced frames always
     /// do. One pixel in 4: with --fovea 0 --mid 180 --rate-mid 2 --rate-far 2 --budget 0
     #[arg(long, help_heading = HEADING)]
     pub single_pixels: bool,
@@ -193,10 +193,15 @@ impl FoveationArgs {
         let is_uniform = self.filter() == FilterName::Uniform;
         let has_geometry = self.geometry.is_some() && !self.filter().is_quad_views();
         let misplaced = [
-            (self.budget.is_some() && !self.is_quads(), "budget", "frames of which methods choose pixels", "quads"),
-            (self.share.is_some() && !self.is_quads(), "share", "frames of which methods choose pixels", "quads"),
+            (self.budget.is_some() && !self.is_quads(), "budget", "frames of which methods choose pixels", "planned"),
+            (self.share.is_some() && !self.is_quads(), "share", "frames of which methods choose pixels", "planned"),
             (self.scale.is_some() && !is_uniform, "scale", "uniform frames", "uniform"),
-            (self.single_pixels && !self.is_quads(), "single-pixels", "frames of which methods choose pixels", "quads"),
+            (
+                self.single_pixels && !self.is_quads(),
+                "single-pixels",
+                "frames of which methods choose pixels",
+                "planned",
+            ),
             (has_geometry, "geometry", "quad views", "layers or uniform"),
         ];
         match misplaced.iter().find(|row| row.0) {
@@ -215,7 +220,7 @@ impl FoveationArgs {
              the samples of traced frames lie anywhere in their pixels already"
                 .into()
         } else if self.filter().is_quad_views() {
-            format!("--foveation {name} has four samples a pixel; use --foveation quads")
+            format!("--foveation {name} has four samples a pixel; use --foveation planned")
         } else {
             return Ok(());
         };
@@ -241,9 +246,14 @@ impl FilterName {
     }
 }
 
+/// Name of a filter here.
+fn named(filter: Filter) -> &'static str {
+    if filter == Filter::Quads { "planned" } else { filter.name() }
+}
+
 impl Named for FilterName {
     fn rows() -> Vec<(Self, &'static str, &'static str)> {
-        let mut rows: Vec<_> = Filter::ALL.map(|filter| (Self::Of(filter), filter.name(), filter.summary())).into();
+        let mut rows: Vec<_> = Filter::ALL.map(|filter| (Self::Of(filter), named(filter), filter.summary())).into();
         let off = rows.pop();
         rows.extend([
             (
@@ -256,7 +266,7 @@ impl Named for FilterName {
                 Self::Uniform,
                 "uniform",
                 "The whole frame at a lower resolution without moving samples, enlarged bilinearly; see --scale. With \
-                 moving samples for taau: --foveation quads with --single-pixels",
+                 moving samples for taau: --foveation planned with --single-pixels",
             ),
         ]);
         rows.extend(off);
@@ -273,6 +283,9 @@ impl Named for Geometry {
     }
 }
 
+/// Another name of planned frames.
+const QUADS: &str = "quads";
+
 /// Parser of `--foveation`, which says what replaces a value of earlier versions.
 #[derive(Clone)]
 struct FilterParser;
@@ -282,10 +295,11 @@ impl TypedValueParser for FilterParser {
 
     fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<FilterName, Error> {
         if value == "sparse" {
-            let text = "--foveation sparse: use --foveation quads, which shades better pixels; with --single-pixels one \
-                        pixel of a quad\n";
+            let text = "--foveation sparse: use --foveation planned, which shades better pixels; with --single-pixels \
+                        one pixel of a quad\n";
             return Err(Error::raw(ErrorKind::InvalidValue, text).with_cmd(command));
         }
+        let value = if value == QUADS { OsStr::new(named(Filter::Quads)) } else { value };
         by_name::<FilterName>().parse_ref(command, arg, value)
     }
 

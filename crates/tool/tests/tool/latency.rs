@@ -17,6 +17,7 @@ fn stepping() -> String {
 fn a_late_gaze_foveates_elsewhere_and_scores_know_the_true_one() {
     let folder = Folder::new();
     let gaze = folder.write("gaze.csv", stepping().as_bytes());
+    // `quads` is another name of `planned`.
     for foveation in ["quads", "mip"] {
         // Times count from the first sample. Three frames are 50 ms.
         let runs = [("1.008333333", 0.0), ("1.008333333", 50.0), ("0.958333333", 0.0)].map(|(start, latency_ms)| {

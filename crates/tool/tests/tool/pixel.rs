@@ -29,7 +29,7 @@ fn says_what_is_shown(rows: &[(String, String, String)], png: &std::path::Path, 
 
 #[test]
 fn a_pixel_is_explained_frame_by_frame_for_every_method() {
-    for (foveation, methods) in [("mip", "none,wrs,smr,taa,taau"), ("quads", "wrs,taau,smr")] {
+    for (foveation, methods) in [("mip", "none,wrs,smr,taa,taau"), ("planned", "wrs,taau,smr")] {
         let asked = format!("--method {methods} --foveation {foveation} --gaze 100,60 --no-flip");
         let out = ran("analytic:lateral", &format!("{SMALL} {asked} --pixel 40,30 --pixel-frames 2..3"));
         let csv = out.text("pixel.csv");

@@ -1,4 +1,4 @@
-//! `afterimage run --foveation quads`.
+//! `afterimage run --foveation planned`.
 
 use super::rig::{Folder, Out, SMALL, ran, refuses, run, words};
 use serde_json::Value;
@@ -7,7 +7,7 @@ const METHODS: [&str; 3] = ["none", "wrs", "smr"];
 
 /// A run of quads on a backend.
 fn quads(input: &str, backend: &str, more: &str) -> Out {
-    ran(input, &format!("--foveation quads --backend {backend} --no-flip {more}"))
+    ran(input, &format!("--foveation planned --backend {backend} --no-flip {more}"))
 }
 
 /// A figure of each frame.
@@ -46,7 +46,7 @@ fn reports_say_how_much_was_shaded() {
         assert!(is_consistent(&report, &shares, &even, budget), "{shares:?}, {even:?}");
         assert!(!is_consistent(&report, &shares, &even, 2.1 * budget), "a planted error: half the budget");
         let foveation = &report["foveation"];
-        assert_eq!(foveation["simulator"], "quads");
+        assert_eq!(foveation["simulator"], "planned");
         assert_eq!(["rate_mid", "rate_far"].map(|rate| foveation[rate].as_u64().unwrap()), [4, 8]);
         assert_eq!(foveation["budget_percent"].as_f64(), percent.parse().ok());
         let smr = &report["methods"]["smr"];
@@ -129,20 +129,20 @@ fn what_quads_cannot_do_is_refused() {
     let out = folder.text("out");
     let still = "analytic:still";
     let refused = |input: &str, more: &str, expected: &[&str]| {
-        refuses(&run(input, &out, &words(&format!("--foveation quads --backend cpu {more}"))), expected)
+        refuses(&run(input, &out, &words(&format!("--foveation planned --backend cpu {more}"))), expected)
     };
     refused(still, "--method oracle", &["oracle", "moving samples"]);
     refused(still, "--geometry samples", &["--geometry", "--foveation layers"]);
     refused(still, "--rate-far 16", &["rate_far", "power of two from 2 to 8"]);
     refused(still, "--rate-mid 8 --rate-far 4", &["rate_far is 4", "at least rate_mid, 8"]);
-    refused("builtin:cubes", "--source trace --sampling regions", &["--foveation quads", "--sampling regions"]);
+    refused("builtin:cubes", "--source trace --sampling regions", &["--foveation planned", "--sampling regions"]);
     for budget in ["-1", "101", "NaN", "much"] {
         refused(still, &format!("--budget={budget}"), &["--budget", "0 to 100 percent"]);
     }
-    refuses(&run(still, &out, &["--budget", "3"]), &["--budget", "--foveation quads"]);
-    refuses(&run(still, &out, &["--single-pixels"]), &["--single-pixels", "--foveation quads"]);
+    refuses(&run(still, &out, &["--budget", "3"]), &["--budget", "--foveation planned"]);
+    refuses(&run(still, &out, &["--single-pixels"]), &["--single-pixels", "--foveation planned"]);
     refused(still, "--share 25 --budget 3", &["--share", "--budget"]);
-    refuses(&run(still, &out, &["--share", "25"]), &["--share", "--foveation quads"]);
-    refuses(&["bench", "--foveation", "quads"], &["--foveation"]);
+    refuses(&run(still, &out, &["--share", "25"]), &["--share", "--foveation planned"]);
+    refuses(&["bench", "--foveation", "planned"], &["--foveation"]);
     assert!(!folder.path("out").exists(), "nothing was written");
 }

@@ -18,8 +18,8 @@ fn bad_usage_is_one_line_and_exit_code_2() {
     refuses(&run(still, &out, &["--frames", "0"]), &["--frames", "1 to"]);
     refuses(&run(still, &out, &["--fovea", "20"]), &["fovea", "15"]);
     refuses(&run(still, &out, &["--rate-mid", "5"]), &["power of two"]);
-    refuses(&run(still, &out, &["--foveation", "quads", "--method", "oracle"]), &["oracle", "moving samples"]);
-    refuses(&run(still, &out, &["--foveation", "sparse"]), &["--foveation quads", "--single-pixels"]);
+    refuses(&run(still, &out, &["--foveation", "planned", "--method", "oracle"]), &["oracle", "moving samples"]);
+    refuses(&run(still, &out, &["--foveation", "sparse"]), &["--foveation planned", "--single-pixels"]);
     refuses(&run(still, &out, &["--hfov", "180"]), &["180"]);
     refuses(&run(still, &out, &["--fps", "0"]), &["--fps", "above 0"]);
     refuses(&run(still, &out, &["--exposure", "65"]), &["--exposure", "64 stops"]);
@@ -30,7 +30,7 @@ fn bad_usage_is_one_line_and_exit_code_2() {
     refuses(&run(frames, &out, &["--jitter", "halton"]), &["--jitter halton", "--source raster", "analytic:NAME"]);
     refuses(&run("builtin:cubes", &out, &["--jitter", "halton", "--source", "trace"]), &["--jitter halton", "raster"]);
     let layers = ["--jitter", "halton", "--foveation", "layers"];
-    refuses(&run("builtin:cubes", &out, &layers), &["--jitter halton", "--foveation quads"]);
+    refuses(&run("builtin:cubes", &out, &layers), &["--jitter halton", "--foveation planned"]);
     refuses(&run(still, &out, &["--start=-1"]), &["start"]);
     refuses(&run(still, &out, &["--wrs-bias", "exponential:x"]), &["LAMBDA"]);
     refuses(&run(still, &out, &["--gate-divisor", "0"]), &["gate.divisor"]);

@@ -78,12 +78,12 @@ fn both_backends_write_the_same_bytes() {
     let debug = format!("--size 160x90 --frames 4 --wrs-sampler a-es --no-jod --debug {DEBUG}");
     let traced = "--source trace --spp 2 --reference-samples 2 --no-jod --method none,taa,taau,smr --frames 3 --size 64x36 \
                   --gaze 20,12";
-    for (input, line, simulator) in [("analytic:occluder", &debug[..], "mip"), ("builtin:cubes", traced, "quads")] {
+    for (input, line, simulator) in [("analytic:occluder", &debug[..], "mip"), ("builtin:cubes", traced, "planned")] {
         let [cpu, gpu] = same_on_both_backends(input, line);
         assert_eq!((&cpu["backend"]["kind"], &gpu["backend"]["kind"]), (&"cpu".into(), &"gpu".into()));
         let foveation = &cpu["foveation"];
         assert_eq!(foveation["simulator"], simulator, "{line}");
-        if simulator == "quads" {
+        if simulator == "planned" {
             // Stored samples and their noise, of two frames.
             assert_eq!(cpu["methods"]["smr"]["persistent_bytes_per_pixel"], 24.0);
             continue;
@@ -120,8 +120,8 @@ fn scenes_have_few_samples_by_default_and_given_frames_are_blurred() {
         return;
     }
     for (input, more, expected) in [
-        ("builtin:cubes", "", ["quads", ""]),
-        ("builtin:cubes", "--source trace --spp 1 --reference-samples 1", ["quads", ""]),
+        ("builtin:cubes", "", ["planned", ""]),
+        ("builtin:cubes", "--source trace --spp 1 --reference-samples 1", ["planned", ""]),
         ("builtin:cubes", "--foveation layers", ["layers", "samples"]),
         ("builtin:cubes", "--foveation mip", ["mip", ""]),
         ("analytic:still", "", ["mip", ""]),

@@ -148,7 +148,7 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
     let method = match method {
         MethodName::Post(MethodKind::Taau) if filter.is_quad_views() => {
             return refuse(&format!(
-                "needs moving samples, which --foveation {} has not; use --foveation quads, for one pixel in 4 with \
+                "needs moving samples, which --foveation {} has not; use --foveation planned, for one pixel in 4 with \
                  --single-pixels --fovea 0 --mid 180 --rate-mid 2 --rate-far 2 --budget 0, or leave it out",
                 filter.name()
             ));
@@ -179,7 +179,7 @@ fn check_quads(args: &RunArgs) -> Result<(), Failure> {
     if args.sampling.sampling != SamplingName::Uniform {
         let name = args.sampling.sampling.name();
         return Err(Failure::Input(format!(
-            "--foveation quads: methods choose the pixels, and --sampling {name} chooses them, too; leave one of the two out"
+            "--foveation planned: methods choose the pixels, and --sampling {name} chooses them, too; leave one of the two out"
         )));
     }
     Ok(())

@@ -47,7 +47,7 @@ impl Setup {
         if args.foveation.is_jittered() && !(args.input.is_rasterised() && args.foveation.is_quads()) {
             return refuse(
                 "--jitter halton: the viewer jitters planned frames of scenes only; give a scene (.gltf, .glb, \
-                 builtin:NAME) and --foveation quads, or use run"
+                 builtin:NAME) and --foveation planned, or use run"
                     .into(),
             );
         }

@@ -272,7 +272,7 @@ pub(super) mod tests {
         let expected = ["weight", "age", "survival", "flush", "gate", "motion"].map(Some);
         assert_eq!((&views[..6], views[6]), (&expected[..], None));
         let filters: Vec<_> = (0..5).map(|_| (state.apply(Action::Filter), state.filter.name()).1).collect();
-        assert_eq!(filters, ["gauss", "block", "quads", "off", "mip"]);
+        assert_eq!(filters, ["gauss", "block", "planned", "off", "mip"]);
     }
 
     #[test]
@@ -283,7 +283,7 @@ pub(super) mod tests {
         state.is_rasterised = true;
         let rendered: Vec<_> =
             (0..4).map(|_| (press(&mut state, KeyCode::KeyT, false), state.filter.name()).1).collect();
-        assert_eq!(rendered, ["quads", "layers", "off", "quads"]);
+        assert_eq!(rendered, ["planned", "layers", "off", "planned"]);
         let filters: Vec<_> = (0..6).map(|_| (state.apply(Action::Filter), state.filter.name()).1).collect();
         assert_eq!(filters, ["layers", "uniform", "off", "mip", "gauss", "block"]);
     }
