@@ -34,8 +34,8 @@ pub struct FoveationArgs {
     /// most --rate-far
     #[arg(long, value_name = "N", help_heading = HEADING)]
     pub rate_mid: Option<u32>,
-    /// Block edge beyond the middle region, pixels, a power of two; planned: 2 to 8; default: 16, for planned 8, at least
-    /// --rate-mid
+    /// Block edge beyond the middle region, pixels, a power of two; planned: 2 to 8; default: 16, for planned 8, at
+    /// least --rate-mid
     #[arg(long, value_name = "N", help_heading = HEADING)]
     pub rate_far: Option<u32>,
     /// With --foveation planned: pixels a frame that smr shades by need, beside the even pattern, percent, 0 to 100;
@@ -46,8 +46,8 @@ pub struct FoveationArgs {
     /// temporal upscaler, for example with 25. --fovea, --mid, the rates and --budget follow from it
     #[arg(long, value_parser = parse_percent, value_name = "PERCENT", conflicts_with_all = ["fovea", "mid", "rate_mid", "rate_far", "budget"], help_heading = HEADING)]
     pub share: Option<f32>,
-    /// With --foveation planned: shades one pixel of a chosen quad outside the fovea, not all four; traced frames always
-    /// do. One pixel in 4: with --fovea 0 --mid 180 --rate-mid 2 --rate-far 2 --budget 0
+    /// With --foveation planned: shades one pixel of a chosen quad outside the fovea, not all four; traced frames
+    /// always do. One pixel in 4: with --fovea 0 --mid 180 --rate-mid 2 --rate-far 2 --budget 0
     #[arg(long, help_heading = HEADING)]
     pub single_pixels: bool,
     /// Side of the pixels of --foveation uniform, in pixels of the full-rate frame, 1 to 256; need not be whole;
