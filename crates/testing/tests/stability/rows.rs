@@ -26,7 +26,7 @@ impl Row {
 }
 
 /// All rows, in order.
-pub const ROWS: [Row; 107] = [
+pub const ROWS: [Row; 109] = [
     // Reservoir arithmetic
     row("H01", "R1 empty, R2 w > 0, draw exactly 0", "R2 chosen", BOTH),
     row("H02", "R1 empty, R2 w = 0", "R2's color with w_sum 0; no NaN, not black", BOTH),
