@@ -162,8 +162,8 @@ fn what_is_missing_is_noticed() {
     };
     assert_eq!(without("H08", "GPU"), ["H08 has no test on the GPU"]);
     assert_eq!(without("H84", "GPU"), ["H84 has no test on the GPU"]);
-    let more = [whole, vec![Held::new("H113", "CPU", "a::b", "0")]].concat();
-    assert_eq!(missing(&more), ["H113 is no row"]);
+    let more = [whole, vec![Held::new("H115", "CPU", "a::b", "0")]].concat();
+    assert_eq!(missing(&more), ["H115 is no row"]);
 }
 
 /// The comparison finds a test without a line, a line without a test and a changed value.
