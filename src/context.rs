@@ -12,7 +12,7 @@ use crate::settings::Settings;
 /// Create it with [`new`](Self::new) and change fields, so that later versions can add fields:
 ///
 /// ```
-/// use afterimage::levels::ContextDesc;
+/// use afterimage::internal::ContextDesc;
 /// use afterimage::{DepthConvention, MotionConvention};
 ///
 /// let mut desc = ContextDesc::new([1920, 1080]);
@@ -29,12 +29,12 @@ pub struct ContextDesc {
     /// Convention of motion vectors. Default: previous minus current position in pixels, y down.
     pub motion: MotionConvention,
     /// Convention of depth values, for views that do not state their own
-    /// ([`ViewFrame::depth`](crate::levels::ViewFrame::depth)). Default: linear distance.
+    /// ([`ViewFrame::depth`](crate::internal::ViewFrame::depth)). Default: linear distance.
     pub depth: DepthConvention,
     /// Whether the output has the color input's alpha (1 where that is not finite) instead of 1. GPU only. Default
     /// true.
     ///
-    /// On planned frames ([`Filter::Quads`](crate::levels::Filter::Quads)) smr then stores the alpha of history's
+    /// On planned frames ([`Filter::Quads`](crate::internal::Filter::Quads)) smr then stores the alpha of history's
     /// samples: 8 bytes a pixel and view, and 8 bytes a pixel of memory traffic. Set it to false if the output's alpha
     /// is not used. Alpha has the history that color has, so that both converge alike. Where alpha changes and color
     /// does not, as when something fades with color that is not premultiplied, history is not rejected, and alpha lags:

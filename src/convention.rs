@@ -49,15 +49,14 @@ pub enum YAxis {
 /// A wrong convention shows as history that is rejected or smeared in motion, while a still view looks right.
 ///
 /// ```
-/// use afterimage::levels::ContextDesc;
 /// use afterimage::{MotionConvention, MotionUnit};
 ///
-/// let mut desc = ContextDesc::new([1920, 1080]);
-/// desc.motion = MotionConvention::BEVY;
+/// let of_bevy = MotionConvention::BEVY;
 /// // An upscaler's vectors, but in texture coordinates (FSR2 with a motionVectorScale of the frame's size).
-/// desc.motion = MotionConvention { unit: MotionUnit::Uv, ..MotionConvention::FSR2 };
+/// let of_uv = MotionConvention { unit: MotionUnit::Uv, ..MotionConvention::FSR2 };
 /// // Objects that move write vectors into a texture that was cleared to 0.
-/// desc.motion = MotionConvention { no_vector: Some([0.0; 2]), ..MotionConvention::FSR2 };
+/// let cleared = MotionConvention { no_vector: Some([0.0; 2]), ..MotionConvention::FSR2 };
+/// # let _ = (of_bevy, of_uv, cleared);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
@@ -173,13 +172,10 @@ impl MotionConvention {
 /// [`ViewFrame::previous_from_current`](crate::levels::ViewFrame) uses the same one.
 ///
 /// ```
-/// use afterimage::levels::ContextDesc;
 /// use afterimage::DepthConvention;
 ///
 /// // A reversed-z depth buffer with an infinite far plane.
-/// let mut desc = ContextDesc::new([1920, 1080]);
-/// desc.depth = DepthConvention::Reversed { near: 0.1, far: f32::INFINITY };
-/// desc.depth.validate()?;
+/// DepthConvention::Reversed { near: 0.1, far: f32::INFINITY }.validate()?;
 /// # Ok::<(), afterimage::SettingsError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

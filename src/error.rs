@@ -147,7 +147,7 @@ pub enum FrameError {
     Extent {
         /// Requested size, in pixels.
         size: [u32; 2],
-        /// Largest side, in pixels: [`ContextDesc::MAX_SIDE`](crate::levels::ContextDesc::MAX_SIDE), or what the device
+        /// Largest side, in pixels: 16384, or what the device
         /// allows (`max_texture_dimension_2d`).
         max: u32,
     },
@@ -251,7 +251,7 @@ pub enum FrameValue {
     Reactive,
     /// [`FrameInputs::exposure`](crate::levels::FrameInputs::exposure).
     Exposure,
-    /// Plan of a frame that is shaded by quads: [`Filter::Quads`](crate::levels::Filter::Quads).
+    /// Plan of a planned frame.
     Plan,
     /// Mask of such a frame whose pixels the renderer chose.
     Mask,

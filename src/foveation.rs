@@ -61,11 +61,11 @@ impl Filter {
 /// angles.
 ///
 /// Set it to match your renderer: it tells the post-process the level of detail of each pixel
-/// ([`Settings::foveation`](crate::levels::Settings::foveation)). The simulators ([`levels`](crate::levels)) foveate a
-/// full-rate frame by the same description.
+/// ([`Settings::foveation`](crate::internal::Settings::foveation)). The simulators ([`levels`](crate::levels)) foveate
+/// a full-rate frame by the same description.
 ///
 /// ```
-/// use afterimage::levels::{Filter, Foveation};
+/// use afterimage::internal::{Filter, Foveation};
 ///
 /// // Variable rate shading: full rate to 10 degrees, 2x2 blocks to 25 degrees, 4x4 blocks beyond.
 /// let foveation = Foveation {
@@ -99,8 +99,8 @@ pub struct Foveation {
     /// [`MAX_RATE`](Self::MAX_RATE). Default 16.
     pub rate_far: u32,
     /// With [`Filter::Quads`]: share of the pixels that smr shades by need in a frame, beside the fovea and the even
-    /// pattern, 0 to 1. With [`noisy`](crate::levels::Settings::noisy) frames it counts paths, of which a pixel may get
-    /// several. Default 0.025.
+    /// pattern, 0 to 1. With [`noisy`](crate::internal::Settings::noisy) frames it counts paths, of which a pixel may
+    /// get several. Default 0.025.
     pub budget: f32,
     /// With [`Filter::Quads`]: whether one pixel of a chosen quad is shaded, outside the fovea, in place of all four;
     /// each in turn. For path tracers and compute shaders, which can shade single pixels: four times as many places for
@@ -132,11 +132,11 @@ impl Foveation {
 
     /// Foveation by quads: all within `fovea_deg` (a diameter in degrees), beyond it one quad in a block of 4x4 pixels
     /// within 15 degrees and one in two blocks of 8x8 pixels in the periphery, and the default budget.
-    /// [`Settings::screen`](crate::levels::Settings::screen) and
-    /// [`Settings::headset`](crate::levels::Settings::headset) score better.
+    /// [`Settings::screen`](crate::internal::Settings::screen) and
+    /// [`Settings::headset`](crate::internal::Settings::headset) score better.
     ///
     /// ```
-    /// use afterimage::levels::Foveation;
+    /// use afterimage::internal::Foveation;
     ///
     /// assert!(Foveation::quads().validate().is_ok());
     /// ```
@@ -149,7 +149,7 @@ impl Foveation {
     /// at full rate.
     ///
     /// ```
-    /// use afterimage::levels::Foveation;
+    /// use afterimage::internal::Foveation;
     ///
     /// assert_eq!(Foveation::uniform(0.25).budget, 0.125);
     /// ```
@@ -162,7 +162,7 @@ impl Foveation {
     /// One pixel of each quad, without a gaze: what a temporal upscaler from half the width and height is given.
     ///
     /// ```
-    /// use afterimage::levels::Foveation;
+    /// use afterimage::internal::Foveation;
     ///
     /// assert!(Foveation::quarter().single_pixels);
     /// ```
@@ -177,13 +177,13 @@ impl Foveation {
         offset_px(index, 2)
     }
 
-    /// Jitter of the projection in a frame for [`Smr::antialias`](crate::levels::Smr::antialias), in pixels, each in
+    /// Jitter of the projection in a frame for [`Smr::antialias`](crate::internal::Smr::antialias), in pixels, each in
     /// \[-0.5, 0.5). It moves the samples within their pixels from frame to frame, so that a mean over time is a mean
     /// over the pixel's area. This also holds where the even pattern visits a pixel only every 16 or 128 frames. A
     /// point at `p` without jitter is drawn at `p + jitter_px`. `index`: frame counter.
     ///
     /// ```
-    /// use afterimage::levels::Foveation;
+    /// use afterimage::internal::Foveation;
     ///
     /// assert_eq!(Foveation::jitter_px(0), [-0.5, -0.5]);
     /// assert!(Foveation::jitter_px(7).iter().all(|v| v.abs() <= 0.5));

@@ -129,14 +129,16 @@ pub struct FrameInputs<'a, Colors, Scalars, Vectors> {
     /// color, at its level of detail. On a GPU `Rg16Float`, `Rg32Float` or wider. Required if [`Settings::noisy`] is
     /// set, otherwise `None`. In planned frames it is read only at the pixels of samples.
     pub noise: Option<Vectors>,
-    /// Mask of a [planned frame](crate::levels::Filter::Quads) whose pixels the renderer chose itself, in place of
+    /// Mask of a planned frame whose pixels the renderer chose itself, in place of
     /// `plan`: a pixel is shaded where it is above 0.5; NaN counts as 0. For checkerboards, half resolution, or a
     /// tracer that chooses its own pixels; any pattern does, if it visits every pixel in some frame. On a GPU any float
     /// or normalised format. `None`: `plan` chose the pixels.
+    #[doc(hidden)]
     pub mask: Option<Scalars>,
-    /// Colors of the quads of 2x2 pixels of a [planned frame](crate::levels::Filter::Quads) that are shaded in part:
+    /// Colors of the quads of 2x2 pixels of a planned frame that are shaded in part:
     /// one texel a quad, half the width and height, rounded up. At most one pixel of such a quad is shaded then, as
     /// after a cut (`is_quarter` of either executor). `color` has the other quads. `None`: `color` has all pixels.
+    #[doc(hidden)]
     pub half: Option<Colors>,
     /// Descriptions of the views, one for each view of the context.
     pub views: &'a [ViewFrame],

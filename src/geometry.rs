@@ -55,9 +55,8 @@ impl ViewGeometry {
     }
 
     /// The view at half the width and height, rounded up, whose pixel (x, y) shows the point that pixel (2x, 2y) +
-    /// `place_px` of this view shows: for frames with one pixel of each quad
-    /// ([`Foveation::quarter_place_px`](crate::levels::Foveation::quarter_place_px)). Its jitter is half of the
-    /// frame's.
+    /// `place_px` of this view shows: for planned frames with one pixel of each quad, as after a cut. Its jitter is
+    /// half of the frame's.
     ///
     /// ```
     /// use afterimage::ViewGeometry;

@@ -22,23 +22,21 @@
 //! - [`levels`]: the same of frames with levels of detail, their methods and all tunables.
 //! - [`DepthConvention`], [`MotionConvention`]: what a renderer's depth and motion vectors mean.
 //! - [`FrameStats`], [`Warning`], [`DebugView`]: counters, messages and images of a frame's decisions.
-//! - `gpu::Doctor`, `cpu::Doctor`, [`doctor::Finding`]: checks whether frames match their description, to diagnose
-//!   a wrong picture (`07_doctor.rs`).
+//! - `gpu::Doctor`, [`doctor::Finding`]: checks whether frames match their description, to diagnose a wrong picture
+//!   (`05_doctor.rs`).
 //! - [`CreateError`], [`FrameError`], [`SettingsError`]: errors.
 //! - `examples/`: numbered programs, from the smallest renderer (`01_planned.rs`) to an engine's loop (`02_engine.rs`),
-//!   stereo (`03_stereo.rs`) and a window (`06_window.rs`).
+//!   stereo (`03_stereo.rs`) and a window (`04_window.rs`).
 //!
-//! # Executors
+//! # Devices
 //!
-//! Two executors run the same passes; their results are equal bit for bit on software Vulkan, native and in a browser.
+//! The contexts of both doors record compute passes into your wgpu command encoder: of wgpu 30 (feature `wgpu-30`, on
+//! by default) or wgpu 29 (feature `wgpu-29`), exported as `afterimage::wgpu`. The application chooses wgpu's backends.
+//! On a lost device nothing panics, with one exception: wgpu 29 reports views of textures that are created after the
+//! loss, as in `resize`, to the device's handler of uncaptured errors, and the default handler panics.
 //!
-//! - The contexts of both doors record compute passes into your wgpu command encoder: of wgpu 30 (feature `wgpu-30`, on
-//!   by default) or wgpu 29 (feature `wgpu-29`), exported as `afterimage::wgpu`. The application chooses wgpu's
-//!   backends. On a lost device nothing panics, with one exception: wgpu 29 reports views of textures that are created
-//!   after the loss, as in `resize`, to the device's handler of uncaptured errors, and the default handler panics.
-#![cfg_attr(feature = "cpu", doc = "- [`cpu::CpuAfterimage`]")]
-#![cfg_attr(not(feature = "cpu"), doc = "- `cpu::CpuAfterimage`")]
-//!   (feature `cpu`) processes images in memory: for machines without a GPU, and for tests.
+//! The same passes exist for images in memory; their results are equal bit for bit on software Vulkan, native and in a
+//! browser. The command `afterimage process` runs them on files, without a GPU, too.
 //!
 //! # Determinism
 //!
@@ -70,7 +68,9 @@ pub extern crate wgpu_30 as wgpu;
 mod camera;
 mod context;
 mod convention;
+// For this workspace's other crates and for tests; not part of the stable API.
 #[cfg(feature = "cpu")]
+#[doc(hidden)]
 pub mod cpu;
 pub mod doctor;
 mod error;
@@ -111,6 +111,7 @@ pub use frame::Exposure;
 pub use gaze::Gaze;
 pub use geometry::ViewGeometry;
 #[cfg(feature = "cpu")]
+#[doc(hidden)]
 pub use image::Image;
 pub use kernel::debug_view::DebugView;
 #[cfg(feature = "gpu")]

@@ -49,13 +49,13 @@ pub struct ViewFrame {
     /// that history stays in place while the camera is still. [`geometry`](Self::geometry) describes the projection
     /// without jitter. Temporal antialiasing runs after the post-process, with the same jitter.
     pub jitter_px: [f32; 2],
-    /// Convention of this view's depth values in this frame. `None`: the context's ([`ContextDesc::depth`]). History
+    /// Convention of this view's depth values in this frame. `None`: the context's. History
     /// stays valid when the near plane changes, because distances are stored.
     pub depth: Option<DepthConvention>,
     /// The part of the view that a headset's lens shows: an octagon, given by the lowest and the highest x, y, x + y
-    /// and x - y of its pixels ([`ViewGeometry::visible_px`] computes it from a visibility mask). On [planned
-    /// frames](crate::levels::Filter::Quads) smr does not process pixels outside it, and shows them black; other
-    /// methods process every pixel. `None`: every pixel is visible.
+    /// and x - y of its pixels ([`ViewGeometry::visible_px`] computes it from a visibility mask). Planned
+    /// frames are not processed outside it, and are black there; frames with levels of detail are processed at every
+    /// pixel. `None`: every pixel is visible.
     pub visible_px: Option<[[f32; 4]; 2]>,
 }
 

@@ -1,7 +1,7 @@
 //! Ten thousand frames with resizes leak no memory. A file of its own, for a process of its own.
 
 use afterimage::gpu::{Afterimage, Frame};
-use afterimage::levels::{ContextDesc, ViewFrame};
+use afterimage::internal::{ContextDesc, ViewFrame};
 use afterimage::wgpu::{self, TextureFormat, TextureUsages};
 use afterimage::{Gaze, ViewGeometry};
 

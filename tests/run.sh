@@ -61,15 +61,15 @@ fi
 
 step "examples"
 # `cargo test` has compiled them. Not here: 09 of the lab, which is long, and the experiments of `crates/research`.
-for example in 01_planned 02_engine 03_stereo 04_cpu 05_cpu_stereo 07_doctor 08_own_mask 09_levels \
+for example in 01_planned 02_engine 03_stereo 05_doctor 06_own_mask 07_levels \
     01_moving_camera 02_gpu_moving_camera 03_scanpath 04_gpu_scanpath 05_cpu_fallback 06_debug_views 10_path_trace; do
     printf '\n-- %s\n' "$example"
     "$target/debug/examples/$example"
 done
 if command -v xvfb-run >/dev/null; then
-    AFTERIMAGE_FRAMES=20 xvfb-run -a "$target/debug/examples/06_window"
+    AFTERIMAGE_FRAMES=20 xvfb-run -a "$target/debug/examples/04_window"
 else
-    echo "no xvfb-run: the example 06_window is SKIPPED" >&2
+    echo "no xvfb-run: the example 04_window is SKIPPED" >&2
 fi
 
 seconds_of_steps

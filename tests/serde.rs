@@ -1,6 +1,6 @@
 //! Settings and conventions in configuration files.
 
-use afterimage::levels::{Bias, ContextDesc, Filter, Method, MethodKind, Settings, Wrs};
+use afterimage::internal::{Bias, ContextDesc, Filter, Method, MethodKind, Settings, Wrs};
 use afterimage::{DepthConvention, MotionConvention};
 
 fn round_trip<T: serde::Serialize + serde::de::DeserializeOwned + PartialEq + std::fmt::Debug>(value: T) -> String {

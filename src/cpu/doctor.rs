@@ -9,13 +9,13 @@ use crate::image::Image;
 
 /// Checks whether a renderer's frames match a [`ContextDesc`]: motion vectors, depth, colors, gaze and foveation of one
 /// view. Give it some consecutive frames in which the camera moves and the eye looks around. With
-/// [`Filter::Quads`](crate::levels::Filter::Quads), shade them at full rate, without the plan; motion, jitter, depth
+/// [`Filter::Quads`](crate::internal::Filter::Quads), shade them at full rate, without the plan; motion, jitter, depth
 /// and color are checked.
 ///
 /// ```
 /// use afterimage::cpu::{Doctor, Frame};
 /// use afterimage::doctor::Fault;
-/// use afterimage::levels::{ContextDesc, Filter, ViewFrame};
+/// use afterimage::internal::{ContextDesc, Filter, ViewFrame};
 /// use afterimage::{Gaze, Image, ViewGeometry};
 ///
 /// // A pattern moves to the right by 2 pixels a frame. It was to the left before, but the vectors point to the right.

@@ -241,7 +241,7 @@ impl History {
     }
 
     /// Packed noise of the last processed frame, view after view ([`noise`](crate::kernel::noise)); empty except for
-    /// smr with [`Settings::noisy`](crate::levels::Settings::noisy).
+    /// smr with [`Settings::noisy`](crate::internal::Settings::noisy).
     pub fn noise(&self) -> &[u32] {
         &self.previous.noise
     }

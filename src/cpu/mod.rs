@@ -46,7 +46,7 @@ use plan::Planned;
 /// A frame whose inputs are slices with one image a view; fields are at [`FrameInputs`].
 ///
 /// ```
-/// # use afterimage::levels::ViewFrame;
+/// # use afterimage::internal::ViewFrame;
 /// # use afterimage::Image;
 /// # fn example(left: &Image<[f32; 3]>, right: &Image<[f32; 3]>, views: &[ViewFrame], index: u64) {
 /// use afterimage::cpu::Frame;
@@ -80,7 +80,7 @@ impl<'a> Frame<'a> {
 ///
 /// ```
 /// use afterimage::cpu::{CpuAfterimage, Frame};
-/// use afterimage::levels::{ContextDesc, ViewFrame};
+/// use afterimage::internal::{ContextDesc, ViewFrame};
 /// use afterimage::{Gaze, Image, ViewGeometry};
 ///
 /// let size = [64, 36];
@@ -200,8 +200,8 @@ impl CpuAfterimage {
     /// Changes the settings from the next frame on.
     ///
     /// History survives, unless its layout changes: with another [`method`](Settings::method), with
-    /// [`noisy`](Settings::noisy), for wrs with its [`sampler`](crate::levels::Wrs::sampler) and the scale of its
-    /// [`gate`](crate::levels::Wrs::gate), and for smr with `rate_far` and `filter` of the
+    /// [`noisy`](Settings::noisy), for wrs with its [`sampler`](crate::internal::Wrs::sampler) and the scale of its
+    /// [`gate`](crate::internal::Wrs::gate), and for smr with `rate_far` and `filter` of the
     /// [`foveation`](Settings::foveation).
     ///
     /// # Errors
@@ -248,7 +248,7 @@ impl CpuAfterimage {
     }
 
     /// Discards history and held gaze positions: the next frame is processed like the first one.
-    /// [`Reset::All`](crate::levels::Reset::All) does the same as part of a frame, but keeps the gaze.
+    /// [`Reset::All`](crate::internal::Reset::All) does the same as part of a frame, but keeps the gaze.
     pub fn forget(&mut self) {
         self.planned = None;
         self.history.forget();

@@ -18,13 +18,13 @@ pub(super) struct Planned {
 }
 
 impl CpuAfterimage {
-    /// Pixels to shade of a [planned frame](crate::levels::Filter::Quads), one mask a view: quads of 2x2 pixels, or
-    /// [single pixels](crate::levels::Foveation::single_pixels). Give the frame to [`process`](Self::process) with a
+    /// Pixels to shade of a [planned frame](crate::internal::Filter::Quads), one mask a view: quads of 2x2 pixels, or
+    /// [single pixels](crate::internal::Foveation::single_pixels). Give the frame to [`process`](Self::process) with a
     /// color of the context's size, in which these pixels are shaded. Without history the plan is a quarter of the
     /// pixels ([`is_quarter`](Self::is_quarter)), unless the foveation shades more.
     ///
     /// All quads of the fovea are chosen, an even pattern outside it that visits every quad in turn, and at most the
-    /// share [`Foveation::budget`](crate::levels::Foveation::budget) of a view's quads where history lacks most.
+    /// share [`Foveation::budget`](crate::internal::Foveation::budget) of a view's quads where history lacks most.
     ///
     /// Give it the frame that will be processed, with the parts that are known before shading: views, depth, motion,
     /// trust or reactive mask, index and reset. Its colors and noise are not read, and the colors may be an empty
@@ -32,7 +32,7 @@ impl CpuAfterimage {
     ///
     /// ```
     /// use afterimage::cpu::{CpuAfterimage, Frame};
-    /// use afterimage::levels::{ContextDesc, Foveation, ViewFrame};
+    /// use afterimage::internal::{ContextDesc, Foveation, ViewFrame};
     /// use afterimage::{Gaze, Image, ViewGeometry};
     ///
     /// let size = [64, 36];
@@ -49,7 +49,7 @@ impl CpuAfterimage {
     /// ```
     ///
     /// # Errors
-    /// [`FrameError`] if the foveation is not [`Quads`](crate::levels::Filter::Quads), and as for `process`.
+    /// [`FrameError`] if the foveation is not [`Quads`](crate::internal::Filter::Quads), and as for `process`.
     pub fn plan(&mut self, frame: &Frame<'_>) -> Result<&[Image<bool>], FrameError> {
         frame.check_plan(&self.desc)?;
         check_geometry(&self.desc, frame)?;
@@ -71,9 +71,9 @@ impl CpuAfterimage {
     }
 
     /// Number of paths to trace at each pixel of the last [`plan`](Self::plan), one image a view: 0 where no path is
-    /// traced, at most 16; empty without a plan. With [`noisy`](crate::levels::Settings::noisy) a chosen pixel outside
-    /// the fovea has as many as take more off its squared error, history included, than others; the
-    /// [`budget`](crate::levels::Foveation::budget) counts all of them but the even pattern's first. Otherwise each
+    /// traced, at most 16; empty without a plan. With [`noisy`](crate::internal::Settings::noisy) a chosen pixel
+    /// outside the fovea has as many as take more off its squared error, history included, than others; the
+    /// [`budget`](crate::internal::Foveation::budget) counts all of them but the even pattern's first. Otherwise each
     /// chosen pixel has one.
     pub fn paths(&self) -> &[Image<u8>] {
         self.planned.as_ref().map_or(&[], |planned| &planned.paths)
@@ -81,7 +81,8 @@ impl CpuAfterimage {
 
     /// Whether the last [`plan`](Self::plan) chose one pixel of each quad outside the fovea, because nothing was known:
     /// in the first frame and after a reset. These pixels can be drawn at half the width and height
-    /// ([`ViewGeometry::half`](crate::ViewGeometry::half)), and given so ([`half`](crate::levels::FrameInputs::half)).
+    /// ([`ViewGeometry::half`](crate::ViewGeometry::half)), and given so
+    /// ([`half`](crate::internal::FrameInputs::half)).
     pub fn is_quarter(&self) -> bool {
         self.planned.as_ref().is_some_and(|planned| planned.is_quarter)
     }

@@ -5,7 +5,7 @@ use super::shape::Shape;
 /// Types by which the caller describes frames, and which a line of code must name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Door {
-    /// [`ContextDesc`](crate::levels::ContextDesc).
+    /// `afterimage::levels::Desc`.
     Context,
     /// `afterimage::Desc` and `afterimage::Camera`.
     #[cfg(feature = "gpu")]

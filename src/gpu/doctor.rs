@@ -35,13 +35,12 @@ struct DoctorUniforms {
     maps: [[f32; 4]; HYPOTHESES as usize],
 }
 
-/// Checks whether a renderer's frames match a [`ContextDesc`]: motion vectors, depth, colors, gaze and foveation of one
-/// view.
+/// Checks whether a renderer's frames match their description: motion vectors, depth, colors, gaze and foveation of one
+/// view. [`Afterimage::doctor`](crate::Afterimage::doctor) of either door makes it.
 ///
-/// Give it some consecutive frames in which the camera moves and the eye looks around; with
-/// [`Filter::Quads`](crate::levels::Filter::Quads) shade them at full rate, without `prime`. `record` never submits,
-/// maps or waits: the caller reads its buffer back at any later time, and gives the bytes to [`read`](Self::read).
-/// `examples/07_doctor.rs` is a whole program; `cpu::Doctor` has a smaller example.
+/// Give it some consecutive frames in which the camera moves and the eye looks around; shade planned frames at full
+/// rate. `record` never submits, maps or waits: the caller reads its buffer back at any later time, and gives the bytes
+/// to [`read`](Self::read). `examples/05_doctor.rs` is a whole program.
 #[derive(Debug)]
 pub struct Doctor {
     chart: Chart,
@@ -58,6 +57,7 @@ impl Doctor {
     ///
     /// # Errors
     /// [`CreateError`] if the description is out of range, or has no such view, or a limit of the device is too low.
+    #[doc(hidden)]
     pub fn new(device: &Device, desc: &ContextDesc, view: usize) -> Result<Self, CreateError> {
         Self::with(device, desc, view, Door::Context, &Sources::default())
     }

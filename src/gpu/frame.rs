@@ -54,7 +54,7 @@ impl<'a> Frame<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct Target<'a> {
     /// Output frame, of the context's output format, with the usage `STORAGE_BINDING`. Its color is linear, like the
-    /// input's. Its alpha is the input's, or 1 ([`ContextDesc::keep_alpha`](crate::levels::ContextDesc::keep_alpha)).
+    /// input's. Its alpha is the input's, or 1 (`keep_alpha` of the description).
     pub output: Textures<'a>,
     /// Debug view of the frame's decisions, drawn by the same pass. `None`: no view, at no cost.
     pub debug: Option<DebugTarget<'a>>,

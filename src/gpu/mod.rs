@@ -179,8 +179,8 @@ impl Afterimage {
     /// Changes the settings from the next frame on.
     ///
     /// History survives, unless its layout changes: with another [`method`](Settings::method), with
-    /// [`noisy`](Settings::noisy), for wrs with its [`sampler`](crate::levels::Wrs::sampler) and the scale of its
-    /// [`gate`](crate::levels::Wrs::gate), and for smr with `rate_far` and `filter` of the
+    /// [`noisy`](Settings::noisy), for wrs with its [`sampler`](crate::internal::Wrs::sampler) and the scale of its
+    /// [`gate`](crate::internal::Wrs::gate), and for smr with `rate_far` and `filter` of the
     /// [`foveation`](Settings::foveation).
     ///
     /// # Errors
@@ -353,19 +353,19 @@ impl Afterimage {
     }
 
     /// Records, into `encoder`, the choice of the quads of 2x2 pixels to shade of a frame [shaded by
-    /// quads](crate::levels::Filter::Quads). The renderer reads it from [`quad_mask`](Self::quad_mask) or
+    /// quads](crate::internal::Filter::Quads). The renderer reads it from [`quad_mask`](Self::quad_mask) or
     /// [`quad_list`](Self::quad_list), shades these quads at full rate, and gives a color of the context's size with
     /// them to [`record`](Self::record) of the same frame.
     ///
     /// All quads of the fovea are chosen, an even pattern outside it that visits every quad in turn, and at most the
-    /// share [`Foveation::budget`](crate::levels::Foveation::budget) of a view's quads where history lacks most.
+    /// share [`Foveation::budget`](crate::internal::Foveation::budget) of a view's quads where history lacks most.
     ///
     /// Give it the frame that will be recorded, with the parts that are known before shading: views, depth, motion,
     /// trust or reactive mask, index and reset. Its colors and noise are not read. History is unchanged. If its encoder
     /// is never submitted, plan again before `record`.
     ///
     /// ```no_run
-    /// # use afterimage::levels::ViewFrame;
+    /// # use afterimage::internal::ViewFrame;
     /// # use afterimage::wgpu;
     /// # fn example(
     /// #     post: &mut afterimage::gpu::Afterimage, device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder,
@@ -382,7 +382,7 @@ impl Afterimage {
     /// ```
     ///
     /// # Errors
-    /// [`FrameError`] if the foveation is not [`Quads`](crate::levels::Filter::Quads), and as for `record`; then
+    /// [`FrameError`] if the foveation is not [`Quads`](crate::internal::Filter::Quads), and as for `record`; then
     /// nothing was recorded.
     pub fn plan(&mut self, device: &Device, encoder: &mut CommandEncoder, frame: &Frame<'_>) -> Result<(), FrameError> {
         frame.check_plan(&self.desc)?;
@@ -474,9 +474,9 @@ impl Afterimage {
         Ok(())
     }
 
-    /// The pixels that the last [`plan`](Self::plan) of a frame [shaded by quads](crate::levels::Filter::Quads) chose:
-    /// an `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bits 0 to 3 say which of its pixels are
-    /// shaded, row by row, and bits 8 to 12 how many paths each of them gets, as in
+    /// The pixels that the last [`plan`](Self::plan) of a frame [shaded by quads](crate::internal::Filter::Quads)
+    /// chose: an `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bits 0 to 3 say which of its pixels
+    /// are shaded, row by row, and bits 8 to 12 how many paths each of them gets, as in
     /// [`CpuAfterimage::paths`](crate::cpu::CpuAfterimage::paths), with an array layer for each view; usages
     /// `TEXTURE_BINDING` and `COPY_SRC`. `None` with another filter. Changes of size and settings replace it.
     pub fn quad_mask(&self) -> Option<&Texture> {
@@ -487,7 +487,7 @@ impl Afterimage {
     /// `INDIRECT` and `COPY_SRC`. 32-bit words: at byte 0 the arguments of `draw_indirect` with 6 vertices and an
     /// instance for each quad, at byte 16 those of `dispatch_workgroups_indirect` with 64 invocations a workgroup and
     /// one for each quad, at byte 28 the number of quads, from byte 32 on the quads, x + 65536 y in quads, in no
-    /// particular order. `None` with another filter than [`Quads`](crate::levels::Filter::Quads). Changes of size and
+    /// particular order. `None` with another filter than [`Quads`](crate::internal::Filter::Quads). Changes of size and
     /// settings replace it.
     pub fn quad_list(&self, view: usize) -> Option<&Buffer> {
         self.quads.as_ref().and_then(|quads| quads.quads.views.get(view)).map(|view| &view.list)

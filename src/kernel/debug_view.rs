@@ -47,7 +47,7 @@ impl DebugView {
 /// # #[cfg(feature = "cpu")]
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
-/// use afterimage::levels::{ContextDesc, ViewFrame};
+/// use afterimage::internal::{ContextDesc, ViewFrame};
 /// use afterimage::{Gaze, Image, Verdict, ViewGeometry};
 ///
 /// let size = [8, 8];

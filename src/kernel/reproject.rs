@@ -18,7 +18,7 @@ const COHERENT: [f32; 2] = [0.5, 0.1];
 pub enum Verdict {
     /// History is valid: it belongs to this surface. Grey.
     Valid = 0,
-    /// History is empty: first frame, [`Reset::All`](crate::levels::Reset::All), resize. Blue.
+    /// History is empty: first frame, [`Reset::All`](crate::internal::Reset::All), resize. Blue.
     Reset = 1,
     /// The motion vector is NaN, infinite, or has a component beyond 65536 pixels. Magenta.
     BadMotion = 2,

@@ -1,18 +1,16 @@
 //! The context for full-size frames with levels of detail, on a GPU.
 
-use crate::context::ContextDesc;
+use super::{Desc, Settings};
 use crate::error::{CreateError, FrameError, SettingsError};
-use crate::foveation::Filter;
 use crate::gaze::Gaze;
 use crate::geometry::ViewGeometry;
 use crate::gpu::frame::Frame;
 use crate::gpu::{self, Recorded, Target};
 use crate::kernel::debug_view::DebugView;
-use crate::settings::Settings;
-use wgpu::{CommandEncoder, Device, Limits, TextureFormat};
+use wgpu::{CommandEncoder, Device, Limits};
 
 /// The post-process for full-size frames with levels of detail, on a GPU: a context with its settings, history and
-/// pipelines. The [module's page](super) has an example; `examples/09_levels.rs` is the smallest program.
+/// pipelines. The [module's page](super) has an example; `examples/07_levels.rs` is the smallest program.
 ///
 /// Several frames can be recorded into one encoder; they are processed in that order. Submit recorded frames once, in
 /// the order in which they were recorded. A frame may also be dropped with its encoder, if the surface is outdated, for
@@ -21,24 +19,20 @@ use wgpu::{CommandEncoder, Device, Limits, TextureFormat};
 #[derive(Debug)]
 pub struct Afterimage {
     device: Device,
+    desc: Desc,
     post: gpu::Afterimage,
 }
 
 impl Afterimage {
-    /// A context without history on `device`, which it keeps a handle of, for outputs of `output_format`: one with red,
-    /// green and blue that compute shaders can write. These are `Rgba16Float`, `Rgba32Float`, `Rgba8Unorm` and
-    /// `Rgba8Snorm`; `Bgra8Unorm`, `Rgba16Unorm` and `Rgba16Snorm` with their device features; `Rgb10a2Unorm` and
-    /// `Rg11b10Ufloat` on adapters that can. Creates shader modules; pipelines are compiled by
-    /// [`prewarm`](Self::prewarm), or at the first frame that needs them.
+    /// A context without history on `device`, which it keeps a handle of. Creates shader modules; pipelines are
+    /// compiled by [`prewarm`](Self::prewarm), or at the first frame that needs them.
     ///
     /// # Errors
-    /// [`CreateError`] if the description is out of range, its frames are planned ([`Filter::Quads`]), the output
-    /// format is not supported, a limit of the device is too low, or its backend cannot store history. Then nothing was
-    /// made.
-    pub fn new(device: &Device, desc: &ContextDesc, output_format: TextureFormat) -> Result<Self, CreateError> {
-        check(&desc.settings)?;
-        let post = gpu::Afterimage::new(device, desc, output_format)?;
-        Ok(Self { device: device.clone(), post })
+    /// [`CreateError`] if the description is out of range, the output format is not supported, a limit of the device is
+    /// too low, or its backend cannot store history. Then nothing was made.
+    pub fn new(device: &Device, desc: &Desc) -> Result<Self, CreateError> {
+        let post = gpu::Afterimage::new(device, &desc.passes(), desc.output)?;
+        Ok(Self { device: device.clone(), desc: *desc, post })
     }
 
     /// Limits that a device needs at least for a context of this size: those of small devices
@@ -46,21 +40,21 @@ impl Afterimage {
     /// rest of the program needs, such as WebGPU's defaults, and with those of the largest size if the size changes.
     ///
     /// ```
-    /// use afterimage::levels::{Afterimage, ContextDesc};
+    /// use afterimage::levels::{Afterimage, Desc};
     /// use afterimage::wgpu;
     ///
-    /// let least = Afterimage::required_limits(&ContextDesc::new([1920, 1080]));
+    /// let least = Afterimage::required_limits(&Desc::new([1920, 1080], wgpu::TextureFormat::Rgba16Float));
     /// assert_eq!(least.max_texture_dimension_2d, 1920);
     /// let both = least.or_better_values_from(&wgpu::Limits::default());
     /// assert_eq!(both, wgpu::Limits::default());
     /// ```
-    pub fn required_limits(desc: &ContextDesc) -> Limits {
-        gpu::Afterimage::required_limits(desc)
+    pub fn required_limits(desc: &Desc) -> Limits {
+        gpu::Afterimage::required_limits(&desc.passes())
     }
 
     /// Description of the context, with its current size and settings.
-    pub fn desc(&self) -> &ContextDesc {
-        self.post.desc()
+    pub fn desc(&self) -> &Desc {
+        &self.desc
     }
 
     /// Changes the settings from the next frame on.
@@ -70,21 +64,24 @@ impl Afterimage {
     /// [`gate`](super::Wrs::gate), and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation).
     ///
     /// # Errors
-    /// [`SettingsError`] if a setting is out of range, if frames are planned ([`Filter::Quads`]), or if a limit of the
-    /// device is too low for the settings at the context's size; then nothing changes.
+    /// [`SettingsError`] if a setting is out of range, or if a limit of the device is too low for the settings at the
+    /// context's size; then nothing changes.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), SettingsError> {
-        check(&settings)?;
-        self.post.set_settings(&self.device, settings)
+        self.post.set_settings(&self.device, settings.passes())?;
+        self.desc.settings = settings;
+        Ok(())
     }
 
     /// Changes the size of the views, and discards history even if the size is the same;
     /// [`resize_keeping_history`](Self::resize_keeping_history) keeps it.
     ///
     /// # Errors
-    /// [`FrameError::Extent`] if a side is 0 or above [`ContextDesc::MAX_SIDE`] or what the device allows,
+    /// [`FrameError::Extent`] if a side is 0, above 16384, or more than the device allows,
     /// [`FrameError::Limit`] if another limit of the device is too low for the size; then nothing changes.
     pub fn resize(&mut self, size_px: [u32; 2]) -> Result<(), FrameError> {
-        self.post.resize(&self.device, size_px)
+        self.post.resize(&self.device, size_px)?;
+        self.desc.size_px = size_px;
+        Ok(())
     }
 
     /// Changes the size of the views and resamples history to it, for dynamic resolution. The view directions at the
@@ -101,7 +98,9 @@ impl Afterimage {
         encoder: &mut CommandEncoder,
         size_px: [u32; 2],
     ) -> Result<(), FrameError> {
-        self.post.resize_keeping_history(&self.device, encoder, size_px)
+        self.post.resize_keeping_history(&self.device, encoder, size_px)?;
+        self.desc.size_px = size_px;
+        Ok(())
     }
 
     /// Discards history and held gaze positions: the next frame is processed like the first one. For another scene or
@@ -145,13 +144,14 @@ impl Afterimage {
     /// Size in bytes of the textures that a context of this description would hold between frames.
     ///
     /// ```
-    /// use afterimage::levels::{Afterimage, ContextDesc};
+    /// use afterimage::levels::{Afterimage, Desc};
+    /// use afterimage::wgpu::TextureFormat;
     ///
-    /// let bytes = Afterimage::memory_bytes_of(&ContextDesc::new([1920, 1080]));
+    /// let bytes = Afterimage::memory_bytes_of(&Desc::new([1920, 1080], TextureFormat::Rgba16Float));
     /// assert_eq!(bytes / (1920 * 1080), 21);
     /// ```
-    pub fn memory_bytes_of(desc: &ContextDesc) -> u64 {
-        gpu::Afterimage::memory_bytes_of(desc)
+    pub fn memory_bytes_of(desc: &Desc) -> u64 {
+        gpu::Afterimage::memory_bytes_of(&desc.passes())
     }
 
     /// Records one frame into `encoder`: reads the frame's inputs and the history, and writes `target` (an output
@@ -172,6 +172,15 @@ impl Afterimage {
         target: impl Into<Target<'a>>,
     ) -> Result<Recorded, FrameError> {
         self.post.record(&self.device, encoder, frame, target)
+    }
+
+    /// A doctor that finds mistakes in the frames of view `view`, and the line of code that mends each. Its
+    /// [`record`](gpu::Doctor::record) takes the same frames.
+    ///
+    /// # Errors
+    /// [`CreateError`] if there is no such view, or a limit of the device is too low.
+    pub fn doctor(&self, view: usize) -> Result<gpu::Doctor, CreateError> {
+        gpu::Doctor::new(&self.device, &self.desc.passes(), view)
     }
 
     /// Records a debug view of the decisions that [`record`](Self::record) of the same frame will make, as linear
@@ -207,13 +216,4 @@ impl Afterimage {
     ) -> Result<Recorded, FrameError> {
         self.post.record_view(&self.device, encoder, frame, target, view)
     }
-}
-
-/// Refuses planned frames.
-fn check(settings: &Settings) -> Result<(), SettingsError> {
-    if settings.foveation.filter != Filter::Quads {
-        return Ok(());
-    }
-    let expected = "mip, gauss, block or off; afterimage::Afterimage takes planned frames".into();
-    Err(SettingsError { setting: "foveation.filter", found: "quads".into(), expected })
 }

@@ -24,13 +24,13 @@
 //! # let output = texture(wgpu::TextureUsages::STORAGE_BINDING);
 //! # let mut encoder = device.create_command_encoder(&Default::default());
 //! # let (size, gaze_px, index) = ([640, 360], [200.0, 180.0], 0);
-//! use afterimage::levels::{Afterimage, ContextDesc, Foveation, Frame, ViewFrame};
+//! use afterimage::levels::{Afterimage, Desc, Foveation, Frame, ViewFrame};
 //! use afterimage::{Gaze, ViewGeometry};
 //!
 //! // Once: a context, with the foveation of your renderer.
-//! let mut desc = ContextDesc::new(size);
+//! let mut desc = Desc::new(size, output.format());
 //! desc.settings.foveation = Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() };
-//! let mut post = Afterimage::new(&device, &desc, output.format())?;
+//! let mut post = Afterimage::new(&device, &desc)?;
 //!
 //! // Every frame, after the renderer has drawn the foveated frame into the texture `color`.
 //! let views = [ViewFrame::new(ViewGeometry::flat(size, 70.0)?, Gaze::At { px: gaze_px })];
@@ -43,27 +43,32 @@
 //! [`FrameInputs`], in your renderer's [`DepthConvention`](crate::DepthConvention) and
 //! [`MotionConvention`](crate::MotionConvention).
 //!
-//! - [`ContextDesc`]: description of a context. Its [`Settings`] contain the [`Method`], the renderer's [`Foveation`] and
-//!   all tunables.
+//! - `Desc`: description of a context. Its [`Settings`] contain the [`Method`], the renderer's [`Foveation`] and all
+//!   tunables.
 //! - [`FrameInputs`]: inputs of a frame. [`ViewFrame`]: description of a view.
-//! - `GpuSimulator`, `Pyramid` (feature `cpu`): foveation of full-rate frames, for tests and for renderers that do not
-//!   foveate.
+//! - `Simulator`: foveation of full-rate frames, for tests and for renderers that do not foveate.
 
 #[cfg(feature = "gpu")]
 mod afterimage;
+#[cfg(feature = "gpu")]
+mod desc;
+mod foveation;
+mod settings;
+#[cfg(feature = "gpu")]
+mod simulator;
 
 #[cfg(feature = "gpu")]
 pub use self::afterimage::Afterimage;
-pub use crate::context::ContextDesc;
-pub use crate::foveation::{Filter, Foveation};
+#[cfg(feature = "gpu")]
+pub use self::desc::Desc;
+pub use self::foveation::{Filter, Foveation};
+pub use self::settings::{Method, Settings, Smr};
+#[cfg(feature = "gpu")]
+pub use self::simulator::Simulator;
 pub use crate::frame::{FrameInputs, Reset};
 #[cfg(feature = "gpu")]
 pub use crate::gpu::frame::Frame;
-#[doc(hidden)]
-pub use crate::settings::MethodKind;
-pub use crate::settings::{Bias, DepthTest, Gate, GateMetric, GateScale, Method, Sampler, Settings, Smr, Wrs};
-#[cfg(feature = "cpu")]
-pub use crate::simulator::Pyramid;
+pub use crate::settings::{Bias, DepthTest, Gate, GateMetric, GateScale, Sampler, Wrs};
 #[cfg(feature = "gpu")]
-pub use crate::simulator::{GpuSimulator, SimulatorFrame};
+pub use crate::simulator::SimulatorFrame;
 pub use crate::view::ViewFrame;

@@ -230,7 +230,7 @@ impl Settings {
     /// Memory traffic of a frame in bytes a pixel, read and written. `given`: whether the frame has depth, motion and
     /// trust inputs. Assumes common formats: color and output as halves (8 bytes each), motion as halves (4), depth
     /// (4), trust (1). Taps that neighbouring pixels share are counted once. History of alpha is not counted
-    /// ([`ContextDesc::keep_alpha`](crate::levels::ContextDesc::keep_alpha)).
+    /// ([`ContextDesc::keep_alpha`](crate::internal::ContextDesc::keep_alpha)).
     pub fn traffic_bytes_per_pixel(&self, given: [bool; 3]) -> u32 {
         // The filling stage reads the samples (8 bytes), and writes colors as floats (16), which the pass reads (16).
         let (color, output) = (if self.stages().contains(&Stage::Fill) { 8 + 16 + 16 } else { 8 }, 8);

@@ -13,7 +13,7 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 /// [`Smr`](Self::Smr).
 ///
 /// ```
-/// use afterimage::levels::{Method, MethodKind, Settings, Smr};
+/// use afterimage::internal::{Method, MethodKind, Settings, Smr};
 ///
 /// let settings = Settings { method: Method::Taa, ..Settings::default() };
 /// assert_eq!(settings.method.name(), "taa");
@@ -48,7 +48,7 @@ impl Default for Method {
 /// A [`Method`] without its settings, for lists and names. Default: [`Smr`](Self::Smr).
 ///
 /// ```
-/// use afterimage::levels::MethodKind;
+/// use afterimage::internal::MethodKind;
 ///
 /// assert_eq!(MethodKind::from_name("smr"), Some(MethodKind::Smr));
 /// assert!(MethodKind::ALL.into_iter().all(|kind| MethodKind::from_name(kind.name()) == Some(kind)));
@@ -72,7 +72,7 @@ pub enum MethodKind {
 /// Settings of [`Method::Smr`], scale-matched reservoirs.
 ///
 /// ```
-/// use afterimage::levels::{Method, Settings, Smr};
+/// use afterimage::internal::{Method, Settings, Smr};
 ///
 /// // Averages coarse regions over fewer frames than the default.
 /// let method = Method::Smr(Smr { accumulate: 0.8, ..Smr::default() });
@@ -92,8 +92,8 @@ pub struct Smr {
     pub tolerance: f32,
     /// Whether history is scaled to follow changes of light, instead of being rejected. Default true.
     pub relight: bool,
-    /// Whether planned frames ([`Filter::Quads`](crate::levels::Filter::Quads)) are antialiased: their projection is
-    /// jittered ([`ViewFrame::jitter_px`](crate::levels::ViewFrame::jitter_px), best [`Foveation::jitter_px`]), and
+    /// Whether planned frames ([`Filter::Quads`](crate::internal::Filter::Quads)) are antialiased: their projection is
+    /// jittered ([`ViewFrame::jitter_px`](crate::internal::ViewFrame::jitter_px), best [`Foveation::jitter_px`]), and
     /// history stores means of samples instead of single ones. Set it in place of other temporal antialiasing, and only
     /// for jittered frames. It has no effect on noisy frames, which are averaged in any case, or on other frames.
     /// Default false.
@@ -126,7 +126,7 @@ impl Smr {
 /// Depth test: rejects history at occlusions and disocclusions. Applies to frames with a depth input.
 ///
 /// ```
-/// use afterimage::levels::{DepthTest, Settings};
+/// use afterimage::internal::{DepthTest, Settings};
 ///
 /// // Tolerates more depth noise than the default.
 /// let test = DepthTest { relative: 0.05, ..DepthTest::default() };
@@ -161,7 +161,7 @@ impl Default for DepthTest {
 /// of frames shaded by quads, [`screen`](Self::screen) and [`headset`](Self::headset).
 ///
 /// ```
-/// use afterimage::levels::{ContextDesc, Settings};
+/// use afterimage::internal::{ContextDesc, Settings};
 ///
 /// let mut desc = ContextDesc::new([1920, 1080]);
 /// desc.settings = Settings { seed: 7, ..Settings::responsive() };
@@ -177,7 +177,7 @@ pub struct Settings {
     /// Depth test; `None` compares no depths. Default on.
     pub depth_test: Option<DepthTest>,
     /// Whether frames are noisy, that is path-traced with few samples a pixel. Each frame must then have a noise input
-    /// ([`FrameInputs::noise`](crate::levels::FrameInputs::noise)), so that noise is not mistaken for a change. wrs
+    /// ([`FrameInputs::noise`](crate::internal::FrameInputs::noise)), so that noise is not mistaken for a change. wrs
     /// weights a candidate by its number of samples; smr averages history in the fovea, too, compares means of 8x8
     /// candidates, and stores 8 more bytes a pixel and a mip chain of the candidates. On planned frames smr compares
     /// means of samples, stores the 8 bytes but no mip chain, and does not relight history. Default false.
@@ -229,12 +229,12 @@ impl Settings {
 
     /// smr for frames that are path-traced with few samples a pixel: averages over twice as many frames as
     /// [`steady`](Self::steady). Each frame must have a noise input
-    /// ([`FrameInputs::noise`](crate::levels::FrameInputs::noise)).
+    /// ([`FrameInputs::noise`](crate::internal::FrameInputs::noise)).
     pub fn traced() -> Self {
         Self { method: Method::Smr(Smr::traced()), noisy: true, ..Self::default() }
     }
 
-    /// smr on antialiased frames shaded by quads ([`Filter::Quads`](crate::levels::Filter::Quads)), for screens about
+    /// smr on antialiased frames shaded by quads ([`Filter::Quads`](crate::internal::Filter::Quads)), for screens about
     /// 40 degrees wide: a coarser even pattern and twice the budget of [`Foveation::quads`], 11 % of the pixels. Frames
     /// must be jittered ([`Foveation::jitter_px`]). `docs/quads.md` has the scores.
     pub fn screen() -> Self {

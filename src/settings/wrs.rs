@@ -78,7 +78,7 @@ pub enum GateScale {
 /// color difference from the candidate.
 ///
 /// ```
-/// use afterimage::levels::{Gate, Method, Settings, Wrs};
+/// use afterimage::internal::{Gate, Method, Settings, Wrs};
 ///
 /// // Follows changes of light sooner than the default.
 /// let gate = Some(Gate { divisor: 30.0, ..Gate::default() });
@@ -111,7 +111,7 @@ impl Default for Gate {
 /// Settings of [`Method::Wrs`](super::Method::Wrs), weighted reservoirs. The default is the paper's method.
 ///
 /// ```
-/// use afterimage::levels::{Bias, Method, Sampler, Settings, Wrs};
+/// use afterimage::internal::{Bias, Method, Sampler, Settings, Wrs};
 ///
 /// // A variant of the paper's method.
 /// let wrs = Wrs { sampler: Sampler::AEs, bias: Bias::Exponential { lambda: 0.1 }, ..Wrs::default() };

@@ -7,7 +7,7 @@ use crate::image::Image;
 
 impl Foveation {
     /// Level of detail of every pixel, for [`render`](Self::render) and for `cpu::Frame::lod`. Needs the feature `cpu`.
-    /// Example: `levels::Pyramid`.
+    /// Example: `internal::Pyramid`.
     pub fn lod_map(&self, geometry: &ViewGeometry, gaze_px: [f32; 2]) -> Image<f32> {
         if self.filter == Filter::Block {
             return block::lod_map(self, geometry, gaze_px);

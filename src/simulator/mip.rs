@@ -11,7 +11,7 @@ use glam::Vec3;
 /// beyond the frame's edge.
 ///
 /// ```
-/// use afterimage::levels::{Foveation, Pyramid};
+/// use afterimage::internal::{Foveation, Pyramid};
 /// use afterimage::{Image, ViewGeometry};
 ///
 /// let (size, gaze_px) = ([64, 36], [32.0, 18.0]);

@@ -1,6 +1,6 @@
 //! Simulators of foveation: turn a full-rate frame into the frame that a foveating renderer would have delivered.
 //!
-//! [`Foveation`](crate::levels::Foveation) describes the foveation of renderers and of simulators. `GpuSimulator`
+//! [`Foveation`](crate::internal::Foveation) describes the foveation of renderers and of simulators. `GpuSimulator`
 //! foveates textures. For images in memory (feature `cpu`) there are `Foveation::lod_map` and `Foveation::render`, with
 //! a `Pyramid` of mip levels.
 

@@ -1,7 +1,7 @@
 //! Small frames of arbitrary bit patterns, for properties of whole passes on either executor.
 
 use crate::images::View;
-use afterimage::levels::{Bias, Filter, Foveation, Method, MethodKind, Sampler, Settings, ViewFrame, Wrs};
+use afterimage::internal::{Bias, Filter, Foveation, Method, MethodKind, Sampler, Settings, ViewFrame, Wrs};
 use afterimage::{Gaze, Image, ViewGeometry};
 use afterimage_testing::Draws;
 

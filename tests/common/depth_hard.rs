@@ -4,10 +4,10 @@
 use crate::images::{Images, View, held_words, noise, planned, traced};
 use crate::settings::ungated_of;
 use afterimage::cpu::{CpuAfterimage, Frame};
+use afterimage::internal::{ContextDesc, DepthTest, MethodKind, Reset, Settings};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::pack;
 use afterimage::kernel::surface::{Surface, unpack_surface};
-use afterimage::levels::{ContextDesc, DepthTest, MethodKind, Reset, Settings};
 use afterimage::{DepthConvention, Exposure, FrameStats, Image, Verdict};
 use afterimage_testing::Draws;
 

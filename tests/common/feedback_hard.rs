@@ -3,8 +3,8 @@
 use crate::depth_hard::{Color, Make, Steps};
 use crate::images::{View, off, peak, pixel, times};
 use afterimage::Image;
+use afterimage::internal::{ContextDesc, Filter, Foveation, Method, Settings, Smr};
 use afterimage::kernel::surface::Surface;
-use afterimage::levels::{ContextDesc, Filter, Foveation, Method, Settings, Smr};
 use afterimage_testing::Draws;
 
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.

@@ -4,7 +4,7 @@ use crate::depth_hard::{Color, METHODS, Made, Make, SIZE, desc, of, still};
 use crate::images::{View, noise};
 use crate::settings::ungated;
 use afterimage::Gaze;
-use afterimage::levels::ContextDesc;
+use afterimage::internal::ContextDesc;
 
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! gaze_laws {

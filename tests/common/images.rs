@@ -1,8 +1,8 @@
 //! Images of frames, view by view, in the form of the CPU executor's inputs.
 
 use afterimage::cpu::{CpuAfterimage, Frame};
+use afterimage::internal::{Filter, Foveation, Pyramid, ViewFrame};
 use afterimage::kernel::debug_view::PixelTrace;
-use afterimage::levels::{Filter, Foveation, Pyramid, ViewFrame};
 use afterimage::{FrameStats, Gaze, Image, ViewGeometry};
 use afterimage_testing::Draws;
 

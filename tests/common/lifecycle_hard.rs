@@ -4,7 +4,7 @@
 use crate::depth_hard::{Made, Make, SIZE, Steps, desc};
 use crate::images::{View, noise, pixel, times};
 use crate::surfaces_hard::settings;
-use afterimage::levels::{ContextDesc, MethodKind, Reset};
+use afterimage::internal::{ContextDesc, MethodKind, Reset};
 use afterimage::{Exposure, Image};
 
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.

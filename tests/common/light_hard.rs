@@ -3,8 +3,8 @@
 use crate::depth_hard::{Color, Made, Make, SIZE, Steps, desc, still};
 use crate::images::{View, noise, peak, times};
 use crate::settings::ungated;
+use afterimage::internal::{ContextDesc, Settings};
 use afterimage::kernel::debug_view::PixelTrace;
-use afterimage::levels::{ContextDesc, Settings};
 use afterimage::{Exposure, Image};
 
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.

@@ -2,7 +2,7 @@
 
 use crate::depth_hard::{METHODS, Made, Make, SIZE, of, still};
 use crate::images::{View, noise, pixel, pixels};
-use afterimage::levels::{MethodKind, ViewFrame};
+use afterimage::internal::{MethodKind, ViewFrame};
 use afterimage::{DepthConvention, Image, MotionConvention, Verdict, ViewGeometry};
 use glam::{DMat4, DVec2, DVec3};
 

@@ -2,7 +2,7 @@
 
 use crate::any_frame::number;
 use crate::mask_hard::{Make, SIZE, Shot, foveation, smr, waves};
-use afterimage::levels::{ContextDesc, Foveation, Method, MethodKind, Settings};
+use afterimage::internal::{ContextDesc, Foveation, Method, MethodKind, Settings};
 use afterimage::{Gaze, Image};
 use afterimage_testing::Draws;
 

@@ -2,8 +2,8 @@
 
 use crate::depth_hard::{Color, Made, Make, Steps};
 use crate::images::{View, pixel, times};
+use afterimage::internal::{ContextDesc, Filter, Foveation, Method, MethodKind, Reset, Sampler, Settings, Smr, Wrs};
 use afterimage::kernel::debug_view::PixelTrace;
-use afterimage::levels::{ContextDesc, Filter, Foveation, Method, MethodKind, Reset, Sampler, Settings, Smr, Wrs};
 use afterimage::{Exposure, Image};
 use afterimage_testing::Draws;
 

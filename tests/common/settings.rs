@@ -1,6 +1,6 @@
 //! Settings that many tests share.
 
-use afterimage::levels::{Method, MethodKind, Settings, Wrs};
+use afterimage::internal::{Method, MethodKind, Settings, Wrs};
 
 /// wrs with these settings.
 pub fn wrs(wrs: Wrs) -> Settings {

@@ -1,7 +1,7 @@
 //! Hard cases of the foveation simulators, H69 to H71: laws that hold on either executor.
 
 use afterimage::Image;
-use afterimage::levels::{Filter, Foveation};
+use afterimage::internal::{Filter, Foveation};
 use afterimage_testing::Draws;
 
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.

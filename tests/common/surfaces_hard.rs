@@ -4,7 +4,7 @@
 use crate::depth_hard::{Color, Make};
 use crate::images::{View, noise, off, peak, pixel, pixels, times};
 use crate::low_pass::LowPass;
-use afterimage::levels::{ContextDesc, Foveation, Method, MethodKind, Reset, Settings, Smr};
+use afterimage::internal::{ContextDesc, Foveation, Method, MethodKind, Reset, Settings, Smr};
 use afterimage::{Exposure, Gaze, Image, Verdict};
 use afterimage_testing::Draws;
 

@@ -2,8 +2,8 @@
 
 use crate::images::{noise, pixel, pixels};
 use crate::simulator_hard::*;
+use afterimage::internal::{Filter, Foveation, Pyramid};
 use afterimage::kernel::foveate;
-use afterimage::levels::{Filter, Foveation, Pyramid};
 use afterimage::{Image, ViewGeometry};
 use afterimage_testing::holds;
 use approx::assert_abs_diff_eq;

@@ -1,7 +1,7 @@
 //! View geometry and camera motion from an engine's matrices, and gazes in every form.
 
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::levels::{ContextDesc, Reset, ViewFrame};
+use afterimage::internal::{ContextDesc, Reset, ViewFrame};
 use afterimage::{DepthConvention, FrameStats, Gaze, Image, Verdict, ViewGeometry};
 use afterimage_testing::Draws;
 use glam::camera::rh::proj::{directx, opengl};

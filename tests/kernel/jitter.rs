@@ -1,7 +1,7 @@
 //! Jitter from a jittered projection, and the signs that engines' own numbers have.
 
 use super::geometry::off_axis;
-use afterimage::levels::ViewFrame;
+use afterimage::internal::ViewFrame;
 use afterimage::{Gaze, ViewGeometry};
 use afterimage_testing::Draws;
 use glam::{Mat4, Vec3};

@@ -12,7 +12,7 @@ mod pictures;
 #[allow(dead_code, unused_imports, reason = "the passes' tests use all of it")]
 mod rig;
 
-use afterimage::levels::{ContextDesc, MethodKind, Reset, Settings};
+use afterimage::internal::{ContextDesc, MethodKind, Reset, Settings};
 use afterimage::{Exposure, Image};
 use events::{Event, Stream};
 use pictures::Pictures;

@@ -2,13 +2,13 @@
 
 use super::events::{Event, StreamState};
 use super::rig::View;
+use afterimage::internal::{Foveation, Pyramid, ViewFrame};
 use afterimage::kernel::pack::{half_bits, half_value};
-use afterimage::levels::{Foveation, Pyramid, ViewFrame};
 use afterimage::{Gaze, Image, ViewGeometry};
 use std::collections::HashMap;
 
 pub const FOVEATION: Foveation = Foveation {
-    filter: afterimage::levels::Filter::Mip,
+    filter: afterimage::internal::Filter::Mip,
     fovea_deg: 10.0,
     mid_deg: 30.0,
     blend_deg: 2.0,

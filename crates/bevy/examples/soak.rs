@@ -8,7 +8,7 @@ mod common;
 use bevy::camera::{Exposure, Hdr, Viewport};
 use bevy::prelude::*;
 use bevy_afterimage::afterimage::DebugView;
-use bevy_afterimage::afterimage::levels::{MethodKind, Settings};
+use bevy_afterimage::afterimage::internal::{MethodKind, Settings};
 use bevy_afterimage::{Afterimage, AfterimageDebug, AfterimageStats, CameraGaze, Foveated, FoveationKind, Gaze};
 use common::headless::Headless;
 use common::scene::{Mover, ScenePlugin, TONEMAPPING};

@@ -1,7 +1,7 @@
 //! Components of a camera, and the components that these require.
 
 use afterimage::DebugView;
-use afterimage::levels::{Filter, Foveation, Method, Settings};
+use afterimage::internal::{Filter, Foveation, Method, Settings};
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass};
 use bevy::prelude::*;
 
@@ -11,25 +11,24 @@ use bevy::prelude::*;
 /// Requires `DepthPrepass` and `MotionVectorPrepass`, by which quads are chosen; they stay when this component is
 /// removed. Sets [`Msaa::Off`] while it runs, because most pixels have no samples to average.
 ///
-/// All of it may change at any time, through reflection, too: an inspector such as `bevy-inspector-egui` shows
-/// [`settings`](field@Self::settings) down to each number, as it does the fields of [`Foveated`].
+/// All of it may change at any time, through reflection, too: an inspector such as `bevy-inspector-egui` shows the
+/// fields, as it does those of [`Foveated`].
 ///
 /// ```
 /// use bevy::prelude::*;
-/// use bevy_afterimage::Afterimage;
-/// use bevy_afterimage::afterimage::levels::Settings;
+/// use bevy_afterimage::Foveated;
 ///
-/// let mut camera = Afterimage { settings: Some(Settings::steady()), ..default() };
-/// let accumulate: &mut f32 = camera.path_mut("settings.0.method.0.accumulate")?;
-/// *accumulate = 0.8;
+/// let mut foveated = Foveated::default();
+/// *foveated.path_mut::<f32>("budget")? = 0.1;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 #[require(Foveated, DepthPrepass, MotionVectorPrepass)]
 pub struct Afterimage {
-    /// Method and tunables, where the default ones do not do. Their `foveation` and `Smr::antialias` are ignored:
+    /// Method and tunables, for tests and comparisons. Their `foveation` and `Smr::antialias` are ignored:
     /// [`Foveated`] and [`antialias`](Self::antialias) say them. Default `None`.
+    #[doc(hidden)]
     pub settings: Option<Settings>,
     /// Antialiases with the method smr, in place of temporal antialiasing and MSAA: the camera's projection moves by a
     /// part of a pixel each frame, and history stores means of samples. Not for cameras with a `TemporalJitter` of
@@ -84,14 +83,14 @@ impl Default for Foveated {
 }
 
 impl Foveated {
-    /// Around a gaze, for screens about 40 degrees wide: a tenth of the pixels. The foveation of [`Settings::screen`].
+    /// Around a gaze, for screens about 40 degrees wide: a tenth of the pixels.
     pub fn screen() -> Self {
-        Settings::screen().foveation.into()
+        Self::of(Settings::screen().foveation)
     }
 
-    /// Around a gaze, for headsets, about 100 degrees wide: a wider fovea. The foveation of [`Settings::headset`].
+    /// Around a gaze, for headsets, about 100 degrees wide: a wider fovea.
     pub fn headset() -> Self {
-        Settings::headset().foveation.into()
+        Self::of(Settings::headset().foveation)
     }
 
     /// No fovea, and no gaze needed: `share` of the pixels, 0 to 1, everywhere alike. A temporal upscaler with depth
@@ -103,7 +102,7 @@ impl Foveated {
     /// assert_eq!(Foveated::uniform(0.25).fovea_deg, 0.0);
     /// ```
     pub fn uniform(share: f32) -> Self {
-        Foveation::uniform(share).into()
+        Self::of(Foveation::uniform(share))
     }
 
     /// As many pixels, everywhere alike, as make `target_fps` frames a second: from a tenth to all that history lacks,
@@ -123,17 +122,15 @@ impl Foveated {
         Self { target_fps: Some(target_fps), ..Self::uniform(1.0) }
     }
 
-    fn foveation(&self) -> Foveation {
-        let Self { fovea_deg, mid_deg, rate_mid, rate_far, budget, .. } = *self;
-        Foveation { filter: Filter::Quads, fovea_deg, mid_deg, rate_mid, rate_far, budget, ..Default::default() }
-    }
-}
-
-impl From<Foveation> for Foveated {
-    fn from(foveation: Foveation) -> Self {
+    fn of(foveation: Foveation) -> Self {
         let Foveation { fovea_deg, mid_deg, rate_mid, rate_far, budget, .. } = foveation;
         let kind = FoveationKind::Quads;
         Self { kind, fovea_deg, mid_deg, rate_mid, rate_far, budget, target_fps: None }
+    }
+
+    fn foveation(&self) -> Foveation {
+        let Self { fovea_deg, mid_deg, rate_mid, rate_far, budget, .. } = *self;
+        Foveation { filter: Filter::Quads, fovea_deg, mid_deg, rate_mid, rate_far, budget, ..Default::default() }
     }
 }
 

@@ -5,7 +5,7 @@ use crate::counters::Counters;
 use crate::frame::ExtractedAfterimage;
 use crate::oblique::ObliquePass;
 use afterimage::gpu::{Afterimage, Frame, Prime, Region, Target, Textures};
-use afterimage::levels::{Reset, ViewFrame};
+use afterimage::internal::{Reset, ViewFrame};
 use afterimage::{Exposure, FrameError, wgpu};
 use std::sync::atomic::AtomicBool;
 use wgpu::{CommandEncoder, Device, Texture, TextureFormat, TextureUsages};

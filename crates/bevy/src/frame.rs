@@ -7,7 +7,7 @@ use crate::gaze::{CameraGaze, Gaze};
 use crate::layers::Layers;
 use crate::oblique::{is_oblique, plain};
 use crate::orthographic::{self, is_orthographic};
-use afterimage::levels::{ContextDesc, Foveation, Method, ViewFrame};
+use afterimage::internal::{ContextDesc, Foveation, Method, ViewFrame};
 use afterimage::{DebugView, MotionConvention, ViewGeometry};
 use bevy::camera::{ClearColorConfig, CompositingSpace, MainPassResolutionOverride};
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass, PreviousViewData};

@@ -4,7 +4,7 @@
 //! gets an exponential of their depth instead. One step of depth is then the same ratio everywhere, and a camera that
 //! moves along its view axis, or turns a little, is a factor.
 
-use afterimage::levels::ViewFrame;
+use afterimage::internal::ViewFrame;
 use afterimage::{DepthConvention, Gaze, ViewGeometry};
 use bevy::math::{Mat4, UVec2, Vec2};
 

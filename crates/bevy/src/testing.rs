@@ -4,7 +4,7 @@ pub use crate::auto::Auto;
 use crate::frame::ExtractedAfterimage;
 pub use crate::frame::Planted;
 use crate::pass::Contexts;
-use afterimage::levels::{ContextDesc, ViewFrame};
+use afterimage::internal::{ContextDesc, ViewFrame};
 use afterimage::wgpu;
 use bevy::core_pipeline::prepass::ViewPrepassTextures;
 use bevy::diagnostic::FrameCount;

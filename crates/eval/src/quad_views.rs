@@ -2,7 +2,7 @@
 //! resolution, enlarged and laid over the coarser ones. Pixels do not move from frame to frame.
 
 use afterimage::ViewGeometry;
-use afterimage::levels::Foveation;
+use afterimage::internal::Foveation;
 
 /// Depth and motion of a frame of quad views. Default: [`Full`](Self::Full).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

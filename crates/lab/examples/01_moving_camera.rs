@@ -3,7 +3,7 @@
 //! `cargo run -p afterimage-lab --example 01_moving_camera`
 
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::levels::{ContextDesc, Reset, ViewFrame};
+use afterimage::internal::{ContextDesc, Reset, ViewFrame};
 use afterimage::{DepthConvention, Gaze, Image, MotionConvention, Verdict};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 

@@ -3,7 +3,7 @@
 //! `cargo run -p afterimage-lab --example 02_gpu_moving_camera` (any adapter; software Vulkan: mesa-vulkan-drivers)
 
 use afterimage::gpu::{Afterimage, Frame, Target};
-use afterimage::levels::{ContextDesc, ViewFrame};
+use afterimage::internal::{ContextDesc, ViewFrame};
 use afterimage::wgpu::{TextureFormat, TextureUsages};
 use afterimage::{DepthConvention, Gaze, MotionConvention, MotionDirection, Verdict};
 use afterimage_lab::device::Headless;

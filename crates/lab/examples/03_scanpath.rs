@@ -3,7 +3,7 @@
 //! `cargo run --release -p afterimage-lab --example 03_scanpath [INPUT [SCANPATH.csv]]`
 
 use afterimage::ViewGeometry;
-use afterimage::levels::{Foveation, Method, Settings};
+use afterimage::internal::{Foveation, Method, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{References, Scorer, encode};
 use afterimage_lab::pipeline::{Pipeline, RunKind};

@@ -2,7 +2,7 @@
 //!
 //! `cargo run -p afterimage-lab --example 04_gpu_scanpath [INPUT [SCANPATH.csv]]`; writes `out/04_gpu_scanpath.png`
 
-use afterimage::levels::{Foveation, Method, Settings};
+use afterimage::internal::{Foveation, Method, Settings};
 use afterimage::{Image, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::metric::encode;

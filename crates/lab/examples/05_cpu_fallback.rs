@@ -4,7 +4,7 @@
 
 use afterimage::cpu::{self, CpuAfterimage};
 use afterimage::gpu::{self, Afterimage};
-use afterimage::levels::{ContextDesc, Foveation, Pyramid, Settings, ViewFrame};
+use afterimage::internal::{ContextDesc, Foveation, Pyramid, Settings, ViewFrame};
 use afterimage::wgpu::{Texture, TextureFormat, TextureUsages};
 use afterimage::{FrameError, Gaze, Image, ViewGeometry};
 use afterimage_lab::device::Headless;

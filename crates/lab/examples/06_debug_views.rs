@@ -3,7 +3,7 @@
 //! `cargo run -p afterimage-lab --example 06_debug_views`; writes `out/06_debug_views.png`
 
 use afterimage::gpu::{Afterimage, Frame};
-use afterimage::levels::{ContextDesc, Foveation, Pyramid, ViewFrame};
+use afterimage::internal::{ContextDesc, Foveation, Pyramid, ViewFrame};
 use afterimage::wgpu::{TextureFormat, TextureUsages};
 use afterimage::{DebugView, Gaze, Image};
 use afterimage_lab::device::Headless;

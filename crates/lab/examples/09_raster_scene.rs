@@ -3,8 +3,8 @@
 //! `cargo run --release -p afterimage-lab --example 09_raster_scene [SCENE [FRAMES [OUT.png]]]`; SCENE is a .gltf or
 //! .glb file, or builtin:NAME (default builtin:cubes). Needs an adapter; a software one is enough.
 
+use afterimage::internal::{Foveation, Method, Settings};
 use afterimage::kernel::color::srgb_encode;
-use afterimage::levels::{Foveation, Method, Settings};
 use afterimage::{Image, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::metric::{References, Scorer, encode};

@@ -2,7 +2,7 @@
 //! panic; a new device goes on. The drop-in itself is in `tests/gpu/pass/lifecycle.rs`. Hard case H77.
 
 use afterimage::FrameError;
-use afterimage::levels::{Foveation, Settings};
+use afterimage::internal::{Foveation, Settings};
 use afterimage::wgpu;
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::pipeline::{Pipeline, RunKind};

@@ -1,6 +1,6 @@
 //! An eye in a frame: matrices and gaze.
 
-use afterimage::levels::ViewFrame;
+use afterimage::internal::ViewFrame;
 use afterimage::{Gaze, SettingsError, ViewGeometry};
 use glam::{Mat4, Quat, Vec2, Vec3, Vec4};
 use openxr as xr;
@@ -148,7 +148,7 @@ pub(crate) fn angles(fov: xr::Fovf) -> [f32; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use afterimage::levels::Foveation;
+    use afterimage::internal::Foveation;
 
     /// A point of the world lies, by either projection, at the pixel whose ray goes through it: moved by the jitter in
     /// what is drawn, and where it is in motion vectors. The same at half the width and height.

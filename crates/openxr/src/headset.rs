@@ -8,7 +8,7 @@ use crate::session::{HiddenMesh, Session, VIEWS};
 use crate::targets::{Targets, layers};
 use crate::vulkan::Gpu;
 use afterimage::gpu::{Afterimage, Frame, Prime};
-use afterimage::levels::{ContextDesc, Filter, Foveation, Method, Reset, Settings, Smr, ViewFrame};
+use afterimage::internal::{ContextDesc, Filter, Foveation, Method, Reset, Settings, Smr, ViewFrame};
 use afterimage::{DepthConvention, Desc, Gaze, SettingsError, Shading, ViewGeometry};
 use openxr as xr;
 use std::time::{Duration, Instant};

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::progress;
-use afterimage::levels::{Foveation, Method, MethodKind, Settings};
+use afterimage::internal::{Foveation, Method, MethodKind, Settings};
 use afterimage::{Image, ViewGeometry};
 use afterimage_eval::clip::run_report::{RunFacts, write_report};
 use afterimage_eval::clip::{Clip, ClipReport, REPORTS, foveation_words, title, write_png};

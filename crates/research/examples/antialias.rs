@@ -9,8 +9,8 @@
 //! Makes figures of `docs/integration.md`, "Jitter and temporal antialiasing"; minutes.
 
 use afterimage::cpu::{CpuAfterimage, Frame};
+use afterimage::internal::{ContextDesc, Foveation, Method, Settings, Smr, ViewFrame};
 use afterimage::kernel::color::srgb_encode;
-use afterimage::levels::{ContextDesc, Foveation, Method, Settings, Smr, ViewFrame};
 use afterimage::{Gaze, Image};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::source::analytic::AnalyticSource;

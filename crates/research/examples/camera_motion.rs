@@ -8,9 +8,9 @@
 //! Makes figures of `docs/integration.md`; half a minute.
 
 use afterimage::cpu::{CpuAfterimage, Frame};
+use afterimage::internal::{ContextDesc, Foveation, Settings, ViewFrame};
 use afterimage::kernel::color::srgb_encode;
 use afterimage::kernel::debug_view::PixelTrace;
-use afterimage::levels::{ContextDesc, Foveation, Settings, ViewFrame};
 use afterimage::{Gaze, Image, MotionConvention, ViewGeometry};
 use afterimage_lab::source::FrameSource;
 use afterimage_lab::source::analytic::AnalyticSource;
@@ -30,7 +30,7 @@ fn foveation() -> Foveation {
 
 fn foveated(frame: &Color, geometry: &ViewGeometry, gaze_px: [f32; 2]) -> Color {
     let lods = foveation().lod_map(geometry, gaze_px);
-    let pyramid = afterimage::levels::Pyramid::new(frame.clone(), foveation().max_level());
+    let pyramid = afterimage::internal::Pyramid::new(frame.clone(), foveation().max_level());
     foveation().render(&pyramid, &lods)
 }
 

@@ -4,8 +4,8 @@
 //!
 //! Makes the table "CPU executor and metrics" of `docs/performance.md`.
 
+use afterimage::internal::{Foveation, MethodKind, Settings};
 use afterimage::kernel::color::srgb_decode;
-use afterimage::levels::{Foveation, MethodKind, Settings};
 use afterimage::{Image, ViewGeometry};
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::device::Backend;

@@ -9,8 +9,8 @@
 //! Makes figures of `docs/integration.md`; half a minute.
 
 use afterimage::cpu::{CpuAfterimage, Frame};
+use afterimage::internal::{ContextDesc, Foveation, MethodKind, Settings, ViewFrame};
 use afterimage::kernel::color::srgb_encode;
-use afterimage::levels::{ContextDesc, Foveation, MethodKind, Settings, ViewFrame};
 use afterimage::{Gaze, Image, ViewGeometry};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::source::FrameSource;
@@ -35,7 +35,7 @@ fn halton(mut index: u64, base: u64) -> f32 {
 
 fn foveated(frame: &Color, geometry: &ViewGeometry, gaze_px: [f32; 2], foveation: &Foveation) -> Color {
     let lods = foveation.lod_map(geometry, gaze_px);
-    let pyramid = afterimage::levels::Pyramid::new(frame.clone(), foveation.max_level());
+    let pyramid = afterimage::internal::Pyramid::new(frame.clone(), foveation.max_level());
     foveation.render(&pyramid, &lods)
 }
 

@@ -6,7 +6,7 @@
 //! Makes figures of `docs/method.md`, with the clips that it names.
 
 use afterimage::ViewGeometry;
-use afterimage::levels::{Filter, Foveation, Method, Settings};
+use afterimage::internal::{Filter, Foveation, Method, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{References, Scorer, encode};
 use afterimage_lab::pipeline::{Pipeline, RunKind};

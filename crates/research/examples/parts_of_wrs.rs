@@ -8,7 +8,7 @@
 //! Makes a table of `docs/wrs-findings.md`, whose command is there.
 
 use afterimage::ViewGeometry;
-use afterimage::levels::{Bias, Foveation, Gate, GateMetric, Method, Sampler, Settings, Wrs};
+use afterimage::internal::{Bias, Foveation, Gate, GateMetric, Method, Sampler, Settings, Wrs};
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{References, Scorer, encode};
 use afterimage_lab::pipeline::{Pipeline, RunKind};

@@ -9,7 +9,7 @@
 
 use afterimage::Gaze;
 use afterimage::gpu::{Afterimage, Frame};
-use afterimage::levels::{ContextDesc, Foveation, Method, Settings, Smr, ViewFrame};
+use afterimage::internal::{ContextDesc, Foveation, Method, Settings, Smr, ViewFrame};
 use afterimage::wgpu::{CommandEncoder, TextureFormat, TextureUsages};
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::Headless;

@@ -11,7 +11,7 @@
 //! Makes the table of `docs/quads.md`; half a minute a clip of 320x180, ten minutes for Sponza.
 
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::levels::{ContextDesc, Foveation, Method, Reset, Settings, Smr, ViewFrame};
+use afterimage::internal::{ContextDesc, Foveation, Method, Reset, Settings, Smr, ViewFrame};
 use afterimage::{Gaze, Image, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::SourceFrame;

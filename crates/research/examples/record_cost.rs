@@ -5,7 +5,7 @@
 //! Makes the table "Recording a frame" of `docs/performance.md`; ten seconds.
 
 use afterimage::gpu::{Afterimage, Frame};
-use afterimage::levels::{ContextDesc, Filter, Foveation, Settings, ViewFrame};
+use afterimage::internal::{ContextDesc, Filter, Foveation, Settings, ViewFrame};
 use afterimage::wgpu::{self, Device, Texture, TextureFormat, TextureUsages};
 use afterimage::{Gaze, ViewGeometry};
 use afterimage_lab::clock::Stopwatch;

@@ -11,7 +11,7 @@
 //! Makes the table of "Samples in their places" in `docs/path-tracing.md`.
 
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::levels::{ContextDesc, Foveation, Method, Reset, Settings, ViewFrame};
+use afterimage::internal::{ContextDesc, Foveation, Method, Reset, Settings, ViewFrame};
 use afterimage::{Gaze, Image, ViewGeometry};
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::{Content, RenderedFrame, ShadedColor, ShadingRequest};

@@ -11,7 +11,7 @@
 //! Makes figures of `docs/equal-time.md`, "Headset"; minutes.
 
 use afterimage::gpu::{Afterimage, Frame};
-use afterimage::levels::{ContextDesc, Foveation, Method, MethodKind, Settings, Smr, ViewFrame};
+use afterimage::internal::{ContextDesc, Foveation, Method, MethodKind, Settings, Smr, ViewFrame};
 use afterimage::wgpu::{self, CommandEncoder, Texture, TextureFormat, TextureUsages};
 use afterimage::{FrameError, Gaze};
 use afterimage_lab::clock::{Quartiles, Stopwatch};

@@ -7,7 +7,7 @@
 //!
 //! Makes tables of `docs/method.md` and `docs/metrics.md`.
 
-use afterimage::levels::{Filter, Foveation, MethodKind, Settings};
+use afterimage::internal::{Filter, Foveation, MethodKind, Settings};
 use afterimage::{FrameError, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::frame::RenderedFrame;

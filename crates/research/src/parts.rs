@@ -1,7 +1,7 @@
 //! Passes without one of their parts, to measure the part's cost and its benefit. For measurements only: without a
 //! part, images may contain errors that the part prevents.
 
-use afterimage::levels::MethodKind;
+use afterimage::internal::MethodKind;
 use afterimage::shader::SHADERS;
 
 const HISTORIES: &[MethodKind] = &[MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taau];
@@ -108,7 +108,7 @@ pub fn shader_without(part: &Part, method: MethodKind) -> String {
 mod tests {
     use super::{PARTS, Part, STORED_BIAS, shader_without};
     use crate::safeguards::with_invalid_colors;
-    use afterimage::levels::{Foveation, MethodKind, Settings};
+    use afterimage::internal::{Foveation, MethodKind, Settings};
     use afterimage::wgpu::naga;
     use afterimage::{Image, ViewGeometry};
     use afterimage_lab::device::{Backend, Headless};

@@ -2,7 +2,7 @@
 //! and time. Makes the last columns of `cargo research papers`.
 
 use afterimage::Image;
-use afterimage::levels::{Foveation, Settings};
+use afterimage::internal::{Foveation, Settings};
 use afterimage_lab::clock::Elapsed;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::device::Backend;

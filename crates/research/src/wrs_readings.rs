@@ -3,7 +3,7 @@
 
 use crate::options::WrsTableArgs;
 use crate::parts::{STORED_BIAS, shader_without};
-use afterimage::levels::{Bias, Foveation, Gate, GateScale, Method, Sampler, Settings, Wrs};
+use afterimage::internal::{Bias, Foveation, Gate, GateScale, Method, Sampler, Settings, Wrs};
 use afterimage::{Image, ViewGeometry};
 use afterimage_cli::sweep::grid::command_line;
 use afterimage_lab::device::Backend;

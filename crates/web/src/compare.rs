@@ -5,7 +5,7 @@ use crate::gpu::Gpu;
 use crate::{Demo, Result};
 use afterimage::Image;
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::levels::{ContextDesc, Method, Settings};
+use afterimage::internal::{ContextDesc, Method, Settings};
 use wasm_bindgen::prelude::*;
 use wgpu::Texture;
 

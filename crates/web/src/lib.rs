@@ -8,7 +8,7 @@ mod show;
 mod space;
 mod stage;
 
-use afterimage::levels::{Filter, Foveation, MethodKind, Settings};
+use afterimage::internal::{Filter, Foveation, MethodKind, Settings};
 use gpu::Gpu;
 use show::{Marks, Show};
 use stage::Stage;

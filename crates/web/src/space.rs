@@ -3,7 +3,7 @@
 use crate::Result;
 use crate::gpu::{Dispatch, Gpu};
 use afterimage::gpu::Afterimage;
-use afterimage::levels::ViewFrame;
+use afterimage::internal::ViewFrame;
 use afterimage::{DepthConvention, Gaze, ViewGeometry};
 use glam::{Mat4, Vec4};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};

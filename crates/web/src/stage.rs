@@ -5,7 +5,7 @@ use crate::gpu::{Dispatch, Gpu};
 use crate::space::{self, Images, Space};
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::kernel::color::{srgb_decode, srgb_encode};
-use afterimage::levels::{ContextDesc, Filter, GpuSimulator, Method, Settings, SimulatorFrame, ViewFrame};
+use afterimage::internal::{ContextDesc, Filter, GpuSimulator, Method, Settings, SimulatorFrame, ViewFrame};
 use afterimage::{Gaze, ViewGeometry};
 use wasm_bindgen::JsError;
 use wgpu::{BindingResource, CommandEncoder, ComputePipeline, Texture, TextureFormat};

@@ -21,7 +21,7 @@ use wgpu::{
     BindingResource, BufferUsages, CommandEncoder, ComputePassDescriptor, Device, Texture, TextureFormat, TextureUsages,
 };
 
-/// Inputs and outputs of a simulated frame. Example: [`GpuSimulator`].
+/// Inputs and outputs of a simulated frame. Example: [`Simulator`](crate::levels::Simulator).
 ///
 /// All textures have the context's size, one array layer for each view (a plain 2D texture for one view), and one
 /// sample a pixel.
@@ -48,25 +48,7 @@ impl<'a> SimulatorFrame<'a> {
     }
 }
 
-/// A foveation simulator on a GPU: turns a full-rate frame into the frame that a foveating renderer would have
-/// delivered.
-///
-/// The caller owns device, queue, encoder, submission, and every input and output texture, as with
-/// [`Afterimage`](crate::levels::Afterimage). The simulator holds mip levels, 5.4 bytes a pixel for [`Filter::Mip`] and
-/// 5 for [`Filter::Block`], or an intermediate texture, 16 bytes a pixel for [`Filter::Gauss`].
-///
-/// ```no_run
-/// # use afterimage::wgpu;
-/// # fn example(device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder, full: &wgpu::Texture, foveated: &wgpu::Texture,
-/// #     views: &[afterimage::levels::ViewFrame]) -> Result<(), Box<dyn std::error::Error>> {
-/// use afterimage::levels::{ContextDesc, GpuSimulator, SimulatorFrame};
-///
-/// let desc = ContextDesc::new([full.width(), full.height()]);
-/// let mut simulator = GpuSimulator::new(device, &desc, foveated.format())?;
-/// simulator.record(device, encoder, &SimulatorFrame::new(full, foveated, views))?;
-/// # Ok(())
-/// # }
-/// ```
+/// Passes of [`Simulator`](crate::levels::Simulator).
 #[derive(Debug)]
 pub struct GpuSimulator {
     desc: ContextDesc,
@@ -86,8 +68,8 @@ enum Steps {
 
 impl GpuSimulator {
     /// A simulator of the foveation `desc.settings.foveation`, for frames of the size and number of views of `desc`,
-    /// and outputs of `output_format`, as for [`Afterimage::new`](crate::levels::Afterimage::new). Creates shader
-    /// modules; pipelines are compiled at the first frame that needs them.
+    /// and outputs of `output_format`, as for contexts. Creates shader modules; pipelines are compiled at the first
+    /// frame that needs them.
     ///
     /// # Errors
     /// [`CreateError`] if the description is out of range, the output format is not supported, or a limit of the device
@@ -194,7 +176,7 @@ impl GpuSimulator {
         check_texture(desc, "the full-rate frame", frame.full, TextureUsages::TEXTURE_BINDING)?;
         check_readable("the full-rate frame", frame.full, 3)?;
         let written = [
-            ("output", Some(frame.output), self.output_format, "the output format given to GpuSimulator::new"),
+            ("output", Some(frame.output), self.output_format, "the output format given to the simulator"),
             ("levels of detail", frame.lod, TextureFormat::R32Float, "R32Float"),
         ];
         for (input, texture, format, expected) in written {

@@ -17,8 +17,8 @@ pub use crate::images::{pixel, pixels};
 
 use crate::images::{Images, View, peak, planned, times};
 use afterimage::cpu::{CpuAfterimage, Frame};
+use afterimage::internal::{ContextDesc, Foveation, Method, Reset, Settings};
 use afterimage::kernel::lattice::offset_px;
-use afterimage::levels::{ContextDesc, Foveation, Method, Reset, Settings};
 use afterimage::{Exposure, Gaze, Image};
 use afterimage_testing::Draws;
 use std::ops::{Deref, DerefMut};

@@ -8,7 +8,7 @@ pub mod turning;
 
 use crate::depth_hard::{Make, Steps};
 use crate::images::View;
-use afterimage::levels::{ContextDesc, Foveation, Method, Settings, Smr};
+use afterimage::internal::{ContextDesc, Foveation, Method, Settings, Smr};
 use afterimage::{Gaze, Image};
 
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.

@@ -4,7 +4,7 @@ use super::{context, context_of, frame, jitter_px, wall};
 use crate::depth_hard::{Color, Make, Steps};
 use crate::images::View;
 use afterimage::Image;
-use afterimage::levels::MethodKind;
+use afterimage::internal::MethodKind;
 
 const SIZE: [u32; 2] = [96, 64];
 /// Light of dark and bright stripes.

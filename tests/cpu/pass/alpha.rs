@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::images::traced_alpha;
-use afterimage::levels::{Foveation, Smr};
+use afterimage::internal::{Foveation, Smr};
 
 const SMALL: [u32; 2] = [96, 96];
 

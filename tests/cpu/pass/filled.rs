@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::mask_hard::Mask;
-use afterimage::levels::Foveation;
+use afterimage::internal::Foveation;
 
 const METHODS: [MethodKind; 5] =
     [MethodKind::None, MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taau];

@@ -3,9 +3,9 @@
 
 use super::*;
 use crate::mask_hard::Mask;
+use afterimage::internal::{Foveation, Method, Smr};
 use afterimage::kernel::lattice::offset_px;
 use afterimage::kernel::noise::unpack_noise;
-use afterimage::levels::{Foveation, Method, Smr};
 use afterimage_testing::{accept, p_of_z, reject};
 
 const PIXELS: f64 = (SIZE[0] * SIZE[1]) as f64;

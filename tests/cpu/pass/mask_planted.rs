@@ -2,7 +2,7 @@
 
 use crate::mask_hard::*;
 use crate::reactive::reactive_is_the_inverse_of_trust;
-use afterimage::levels::{ContextDesc, Method, Reset, Settings};
+use afterimage::internal::{ContextDesc, Method, Reset, Settings};
 use afterimage::{Exposure, Image};
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};

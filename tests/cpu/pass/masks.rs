@@ -2,7 +2,7 @@
 
 use super::quads::{BUDGET, Needs, show, show_shaded, wall};
 use super::*;
-use afterimage::levels::{Filter, Foveation, Smr};
+use afterimage::internal::{Filter, Foveation, Smr};
 use afterimage_testing::holds;
 
 type Mask = Image<bool>;

@@ -1,9 +1,9 @@
 //! Antialiasing of jittered planned frames: laws of the means that history stores.
 
 use super::*;
+use afterimage::internal::{Foveation, Smr};
 use afterimage::kernel::antialias::MOST_SAMPLES;
 use afterimage::kernel::lattice::offset_px;
-use afterimage::levels::{Foveation, Smr};
 
 const SMALL: [u32; 2] = [32, 24];
 

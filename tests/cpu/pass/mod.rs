@@ -29,8 +29,8 @@ use crate::depth_hard::{METHODS, SIZE, Steps, still};
 use crate::images::{Images, View, noise, pixel, pixels};
 use crate::settings::{ungated, wrs};
 use afterimage::cpu::{CpuAfterimage, Frame};
+use afterimage::internal::{Bias, ContextDesc, DepthTest, Method, MethodKind, Reset, Sampler, Settings, Wrs};
 use afterimage::kernel::debug_view::PixelTrace;
-use afterimage::levels::{Bias, ContextDesc, DepthTest, Method, MethodKind, Reset, Sampler, Settings, Wrs};
 use afterimage::{
     DepthConvention, Exposure, FrameError, FrameStats, Image, MotionConvention, MotionDirection, MotionUnit, Verdict,
     ViewGeometry, Warning, YAxis,

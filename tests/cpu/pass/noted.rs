@@ -3,8 +3,8 @@
 use super::*;
 use crate::any_frame::{SIZE, all_settings, any_frame};
 use crate::images::planned;
+use afterimage::internal::{Filter, Foveation, Smr};
 use afterimage::internal::{Note, NoteStage, NoteValues, PixelNotes};
-use afterimage::levels::{Filter, Foveation, Smr};
 use std::collections::BTreeSet;
 
 /// Frames of a run.

@@ -3,8 +3,8 @@
 use super::*;
 use crate::any_frame::{self, any_frame};
 use afterimage::Gaze;
+use afterimage::internal::{Foveation, Smr};
 use afterimage::kernel::quads::threshold;
-use afterimage::levels::{Foveation, Smr};
 use afterimage_testing::holds;
 use std::collections::HashMap;
 

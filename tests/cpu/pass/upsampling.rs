@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::mask_hard::{Mask, pattern};
+use afterimage::internal::{Foveation, Method};
 use afterimage::kernel::lattice::offset_px;
-use afterimage::levels::{Foveation, Method};
 
 const GAZE: [f32; 2] = [20.0, 20.0];
 

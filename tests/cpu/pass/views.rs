@@ -4,7 +4,7 @@ use super::depth::run_law;
 use super::*;
 use crate::gaze_hard::*;
 use crate::settings::wrs;
-use afterimage::levels::{Foveation, Wrs};
+use afterimage::internal::{Foveation, Wrs};
 
 gaze_laws!(Cpu, run_law);
 

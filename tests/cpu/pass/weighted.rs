@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::settings::wrs;
-use afterimage::levels::{Foveation, Wrs};
+use afterimage::internal::{Foveation, Wrs};
 
 /// A fovea of radius 10 degrees, and one level of detail outside.
 fn foveation() -> Foveation {

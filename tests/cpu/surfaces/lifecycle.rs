@@ -2,7 +2,7 @@
 
 use super::rig::*;
 use afterimage::Verdict;
-use afterimage::levels::{Method, Smr};
+use afterimage::internal::{Method, Smr};
 
 /// Frames of a fading picture, half of it coarse, so that all output depends on earlier frames.
 fn frame(index: u64) -> View {

@@ -4,7 +4,7 @@
 use super::rig::{Draws, SIZE, Steps, View, context_of, settings, sharp};
 use crate::pass::mask_noise::{self, moments, promised};
 use afterimage::cpu::CpuAfterimage;
-use afterimage::levels::{Method, MethodKind, Settings, Smr};
+use afterimage::internal::{Method, MethodKind, Settings, Smr};
 use afterimage_testing::{accept, p_of_z, reject};
 
 const PIXELS: f64 = (SIZE[0] * SIZE[1]) as f64;

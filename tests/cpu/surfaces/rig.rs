@@ -5,8 +5,8 @@ pub use crate::images::{View, noise, off, peak, pixel, pixels, times};
 pub use crate::low_pass::LowPass;
 pub use crate::surfaces_hard::{METHODS, SIZE, at_lod, settings, sharp};
 pub use afterimage::cpu::CpuAfterimage;
+pub use afterimage::internal::{ContextDesc, MethodKind, Reset, Settings};
 pub use afterimage::kernel::surface::{Surface, unpack_surface};
-pub use afterimage::levels::{ContextDesc, MethodKind, Reset, Settings};
 pub use afterimage::{Exposure, Image, ViewGeometry};
 pub use afterimage_testing::Draws;
 

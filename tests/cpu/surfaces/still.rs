@@ -1,7 +1,7 @@
 //! Still pictures and whole shifts of them: S3 and S9.
 
 use super::rig::*;
-use afterimage::levels::{Method, Smr};
+use afterimage::internal::{Method, Smr};
 
 #[test]
 fn s3_the_chain_is_read_where_and_as_coarse_as_the_candidate_is() {

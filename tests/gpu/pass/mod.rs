@@ -31,11 +31,11 @@ mod surfaces_hard;
 
 use crate::settings::{ungated, ungated_of, wrs};
 use afterimage::gpu::{Afterimage, DebugTarget, Frame, Prime, Region, Target, Textures};
-use afterimage::internal::{Sources, method_pass};
-use afterimage::kernel::pack;
-use afterimage::levels::{
+use afterimage::internal::{
     Bias, ContextDesc, Filter, Foveation, Method, MethodKind, Reset, Sampler, Settings, Smr, ViewFrame, Wrs,
 };
+use afterimage::internal::{Sources, method_pass};
+use afterimage::kernel::pack;
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{self, Device, Limits, Queue, Texture, TextureFormat, TextureUsages};
 use afterimage::{

@@ -4,10 +4,10 @@ use crate::images::{Images, held_words, pixel, pixels, planned, traced, traced_a
 pub use crate::images::{View, noise};
 use afterimage::cpu::CpuAfterimage;
 use afterimage::gpu::{Afterimage, DebugTarget, Frame, Region, Target, Textures};
+use afterimage::internal::{ContextDesc, Filter, Reset, Settings};
 use afterimage::internal::{Sources, method_pass};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::pack;
-use afterimage::levels::{ContextDesc, Filter, Reset, Settings};
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{self, Buffer, BufferUsages, Device, Queue, Texture, TextureFormat, TextureUsages};
 use afterimage::{DebugView, DepthConvention, Exposure, FrameStats, Image};

@@ -3,7 +3,7 @@
 
 use super::rig::*;
 use afterimage::internal::Sources;
-use afterimage::levels::{Filter, Foveation};
+use afterimage::internal::{Filter, Foveation};
 use afterimage::shader::SHADERS;
 use afterimage_testing::planted::all_caught;
 

@@ -1,7 +1,7 @@
 //! Every filter, size, rate and gaze, over frames with NaN, infinity and extreme values.
 
 use super::rig::*;
-use afterimage::levels::Filter;
+use afterimage::internal::Filter;
 
 const RATES: [[u32; 2]; 2] = [[1, 2], [16, 64]];
 

@@ -1,7 +1,7 @@
 //! Several frames in one submission, lost gazes, formats, errors.
 
 use super::rig::*;
-use afterimage::levels::{Filter, Foveation, GpuSimulator, SimulatorFrame};
+use afterimage::internal::{Filter, Foveation, GpuSimulator, SimulatorFrame};
 use afterimage::wgpu::{self, TextureFormat, TextureUsages};
 use afterimage::{CreateError, FrameError, Gaze, ViewGeometry};
 use afterimage_testing::agree;

@@ -2,7 +2,9 @@
 
 pub use crate::pass::rig::make_texture as texture;
 use afterimage::internal::Sources;
-use afterimage::levels::{ContextDesc, Filter, Foveation, GpuSimulator, Pyramid, Settings, SimulatorFrame, ViewFrame};
+use afterimage::internal::{
+    ContextDesc, Filter, Foveation, GpuSimulator, Pyramid, Settings, SimulatorFrame, ViewFrame,
+};
 use afterimage::wgpu::{Device, Queue, Texture, TextureFormat, TextureUsages};
 use afterimage::{Gaze, Image, ViewGeometry};
 use afterimage_testing::{Draws, agree};

@@ -4,7 +4,7 @@ use crate::common::headless::Headless;
 use crate::{SIZE, compared, courtyard, courtyards, kind, psnr_db, wander};
 use bevy::prelude::*;
 use bevy_afterimage::afterimage::DebugView;
-use bevy_afterimage::afterimage::levels::{Method, Settings, Wrs};
+use bevy_afterimage::afterimage::internal::{Method, Settings, Wrs};
 use bevy_afterimage::{Afterimage, AfterimageDebug, Foveated, FoveationKind, Gaze};
 
 #[test]

@@ -22,7 +22,7 @@ use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::prelude::*;
 use bevy::render::RenderApp;
 use bevy::render::renderer::{RenderDevice, RenderQueue};
-use bevy_afterimage::afterimage::levels::{Method, Settings};
+use bevy_afterimage::afterimage::internal::{Method, Settings};
 use bevy_afterimage::afterimage::wgpu;
 use bevy_afterimage::{Afterimage, Foveated, FoveationKind, Gaze};
 use common::headless::{Headless, psnr_db};

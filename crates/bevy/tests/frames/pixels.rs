@@ -6,7 +6,7 @@ use crate::{
     SIZE, aliased, change, clip_psnr_db, clips, compared, courtyard, courtyards, kind, linear, psnr_db, read, wander,
 };
 use afterimage::gpu::{Frame, Region, Textures};
-use afterimage::levels::ViewFrame;
+use afterimage::internal::ViewFrame;
 use afterimage::wgpu;
 use bevy::camera::{CameraProjection, RenderTarget, SubCameraView, Viewport};
 use bevy::math::Vec3A;

@@ -11,7 +11,7 @@ use bevy::reflect::tuple::DynamicTuple;
 use bevy::render::RenderApp;
 use bevy::render::sync_world::RenderEntity;
 use bevy_afterimage::afterimage::DebugView;
-use bevy_afterimage::afterimage::levels::{ContextDesc, DepthTest, Method, Settings, Smr, Wrs};
+use bevy_afterimage::afterimage::internal::{ContextDesc, DepthTest, Method, Settings, Smr, Wrs};
 use bevy_afterimage::testing::recorded;
 use bevy_afterimage::{Afterimage, AfterimageDebug, AfterimagePlugin, AfterimageStats};
 

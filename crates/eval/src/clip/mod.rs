@@ -18,7 +18,7 @@ use crate::quad_views::{Geometry, QuadViewLayout};
 use crate::report::sheet::{Column, Sheet};
 use crate::source::FrameSource;
 use crate::times::{RenderTime, Times};
-use afterimage::levels::{Filter, Foveation, MethodKind};
+use afterimage::internal::{Filter, Foveation, MethodKind};
 use afterimage::{CreateError, DebugView, FrameError, Image, ViewGeometry};
 use afterimage_metric::{Display, Viewing};
 use pixel::ExplainedPixel;

@@ -6,7 +6,7 @@ use crate::method_report::MethodReport;
 use crate::output::{Output, WriteError};
 use crate::pipeline::ProcessorInfo;
 use crate::times::RenderTime;
-use afterimage::levels::Filter;
+use afterimage::internal::Filter;
 use afterimage_metric::Display;
 use serde::Serialize;
 

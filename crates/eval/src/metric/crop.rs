@@ -40,7 +40,7 @@ pub struct Crops {
 
 impl Crops {
     /// Adds the next frame: full-rate reference, the method's output, and the foveated frame (the output of
-    /// [`Method::None`](afterimage::levels::Method::None)), all sRGB-encoded.
+    /// [`Method::None`](afterimage::internal::Method::None)), all sRGB-encoded.
     ///
     /// Crops tile the frame from its top left corner; the last column and row are moved inwards to fit. A frame smaller
     /// than a crop is one crop.

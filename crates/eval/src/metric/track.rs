@@ -2,8 +2,8 @@
 //! metrics, from the full-rate frames and independent of any method.
 
 use crate::frame::SourceFrame;
+use afterimage::internal::DepthTest;
 use afterimage::kernel::{depth, reproject};
-use afterimage::levels::DepthTest;
 use afterimage::{DepthConvention, Image, ViewGeometry};
 
 /// Level of detail below which a pixel counts as sampled at full rate.

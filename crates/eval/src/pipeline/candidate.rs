@@ -1,7 +1,7 @@
 //! The foveated frame, as input of a pipeline's methods.
 
 use afterimage::Image;
-use afterimage::levels::{Filter, Pyramid, ViewFrame};
+use afterimage::internal::{Filter, Pyramid, ViewFrame};
 use std::borrow::Cow;
 
 /// A foveated frame.

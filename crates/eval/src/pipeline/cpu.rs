@@ -6,9 +6,9 @@ use super::run::{Chosen, MethodOutput, RunKind, chooses, unshaded};
 use crate::clock::{Elapsed, Stopwatch};
 use crate::frame::{DeviceHandle, RenderedFrame, Shaded, ShadedColor, ShadingRequest};
 use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
+use afterimage::internal::ContextDesc;
 use afterimage::internal::PixelNotes;
 use afterimage::kernel::debug_view::view_color;
-use afterimage::levels::ContextDesc;
 use afterimage::{CreateError, FrameError, Image};
 use std::slice::from_ref;
 

@@ -3,7 +3,7 @@
 use super::candidate::Candidate;
 use super::run::{MethodOutput, RunKind};
 use crate::frame::{DeviceHandle, RenderedFrame, Shaded, ShadingRequest};
-use afterimage::levels::{ContextDesc, Reset};
+use afterimage::internal::{ContextDesc, Reset};
 use afterimage::{CreateError, DebugView, FrameError};
 
 /// Methods on the CPU or on a device, in the order in which they were added.

@@ -3,7 +3,7 @@
 use super::candidate::{Candidate, InMemory, needs_lod};
 use crate::frame::{Content, DeviceContent, RenderedFrame};
 use crate::quad_views::Geometry;
-use afterimage::levels::{Filter, Foveation, Pyramid, ViewFrame};
+use afterimage::internal::{Filter, Foveation, Pyramid, ViewFrame};
 use afterimage::{Gaze, Image, ViewGeometry};
 use std::borrow::Cow;
 

@@ -18,7 +18,7 @@ use crate::frame::{RenderedFrame, Shaded, ShadingRequest};
 use crate::metric::{Tracked, Tracker};
 use crate::quad_views::{Geometry, QuadViewLayout};
 use crate::source::{FrameRequest, Wanted};
-use afterimage::levels::{ContextDesc, Filter, Foveation, Method, Settings};
+use afterimage::internal::{ContextDesc, Filter, Foveation, Method, Settings};
 use afterimage::{CreateError, DebugView, FrameError, FrameValue, Gaze, Image, SettingsError, ViewGeometry};
 use foveator::Foveator;
 use oracle::Oracle;

@@ -2,7 +2,7 @@
 
 use super::run::MethodOutput;
 use crate::clock::Stopwatch;
-use afterimage::levels::{Foveation, Pyramid};
+use afterimage::internal::{Foveation, Pyramid};
 use afterimage::{FrameError, FrameStats, FrameValue, Image};
 
 /// Every pixel at its finest level of detail so far.

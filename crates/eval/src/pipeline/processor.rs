@@ -3,7 +3,7 @@
 use super::cpu::CpuExecutor;
 use super::executor::Executor;
 use afterimage::CreateError;
-use afterimage::levels::ContextDesc;
+use afterimage::internal::ContextDesc;
 use serde::Serialize;
 use std::fmt::Debug;
 

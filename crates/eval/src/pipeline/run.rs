@@ -2,7 +2,7 @@
 
 use crate::clock::Elapsed;
 use afterimage::internal::Note;
-use afterimage::levels::{Filter, Settings};
+use afterimage::internal::{Filter, Settings};
 use afterimage::{FrameError, FrameStats, FrameValue, Image, SettingsError};
 use std::sync::Arc;
 

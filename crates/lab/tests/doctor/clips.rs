@@ -2,7 +2,7 @@
 
 use afterimage::cpu;
 use afterimage::doctor::Finding;
-use afterimage::levels::{ContextDesc, Filter, Foveation, Pyramid, Reset, ViewFrame};
+use afterimage::internal::{ContextDesc, Filter, Foveation, Pyramid, Reset, ViewFrame};
 use afterimage::{DepthConvention, Gaze, Image, MotionConvention, ViewGeometry};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::source::{self, ReadLimits, SceneOptions};

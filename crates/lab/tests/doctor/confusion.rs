@@ -4,7 +4,7 @@ use super::clips::{Clip, Delivery, foveations};
 use super::planted::{PLANTED, Planted};
 use crate::shared_data::shared_data;
 use afterimage::doctor::{Check, Finding, Outcome};
-use afterimage::levels::Foveation;
+use afterimage::internal::Foveation;
 use rayon::prelude::*;
 
 /// How an error fared on a clip.

@@ -4,8 +4,8 @@ use super::clips::{Clip, Delivery, FORWARD, REVERSED, stored};
 use afterimage::MotionUnit::Uv;
 use afterimage::doctor::Fault::*;
 use afterimage::doctor::{Check, Fault};
+use afterimage::internal::{Filter, Foveation};
 use afterimage::kernel::color::srgb_encode;
-use afterimage::levels::{Filter, Foveation};
 use afterimage::{DepthConvention as Convention, Gaze, MotionConvention};
 
 /// A planted error.

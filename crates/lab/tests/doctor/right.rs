@@ -2,7 +2,7 @@
 
 use super::clips::{Clip, Delivered, Delivery, foveations};
 use super::planted::{contain_jitter, jitter};
-use afterimage::levels::{Filter, Foveation};
+use afterimage::internal::{Filter, Foveation};
 use afterimage::{Gaze, Image};
 use afterimage_testing::Draws;
 

@@ -1,8 +1,8 @@
 //! The words of both executors, bit for bit, on clips that are damaged here and there; planted errors in the shader.
 
 use super::clips::{Clip, Delivered, Delivery, eye, foveations};
+use afterimage::internal::Reset;
 use afterimage::internal::Sources;
-use afterimage::levels::Reset;
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{self, BufferUsages, TextureFormat, TextureUsages};
 use afterimage::{Exposure, Image, cpu, gpu};

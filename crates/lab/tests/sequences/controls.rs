@@ -3,7 +3,7 @@
 
 use super::rig::{Rig, View};
 use super::sequences::{SIZE, foveated, noisy, trust};
-use afterimage::levels::{ContextDesc, Filter, Foveation, Method, MethodKind, Reset, Sampler, Settings, Wrs};
+use afterimage::internal::{ContextDesc, Filter, Foveation, Method, MethodKind, Reset, Sampler, Settings, Wrs};
 use afterimage::shader::SHADERS;
 use afterimage::{Exposure, Gaze, Image};
 use afterimage_lab::source::AnalyticSource;

@@ -4,8 +4,8 @@
 use super::rig::{Rig, View, make_texture, same_counts};
 use super::sequences::{SIZE, reset, surfaces, trust, view};
 use afterimage::gpu::{Frame, Recorded};
+use afterimage::internal::{ContextDesc, Method, Reset, Sampler, Settings, ViewFrame, Wrs};
 use afterimage::kernel::debug_view::view_color;
-use afterimage::levels::{ContextDesc, Method, Reset, Sampler, Settings, ViewFrame, Wrs};
 use afterimage::wgpu::{TextureFormat, TextureUsages};
 use afterimage::{DebugView, Exposure, FrameStats, Gaze, Verdict, Warning};
 use afterimage_lab::source::AnalyticSource;

@@ -2,7 +2,7 @@
 //! throughout.
 
 use super::rig::{Rig, View, noise_view};
-use afterimage::levels::{
+use afterimage::internal::{
     Bias, ContextDesc, Filter, Foveation, Gate, GateMetric, Method, MethodKind, Pyramid, Reset, Sampler, Settings, Smr,
     ViewFrame, Wrs,
 };

@@ -2,7 +2,7 @@
 
 use super::sequences::{SIZE, settings};
 use afterimage::gpu::Afterimage;
-use afterimage::levels::{ContextDesc, Filter, Foveation, MethodKind, Settings};
+use afterimage::internal::{ContextDesc, Filter, Foveation, MethodKind, Settings};
 use afterimage::wgpu::{self, TextureFormat};
 
 #[test]

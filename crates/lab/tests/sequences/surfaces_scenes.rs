@@ -1,7 +1,7 @@
 //! Analytic scenes, foveated and reconstructed: the gain, and that no detail is lost.
 
 use afterimage::Image;
-use afterimage::levels::{Foveation, Method, MethodKind, Settings, Smr};
+use afterimage::internal::{Foveation, Method, MethodKind, Settings, Smr};
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::{NO_PAST, Tracked, encode, psnr_db};
@@ -13,7 +13,7 @@ type Color = Image<[f32; 3]>;
 const VIEW: [u32; 2] = [256, 144];
 /// Wide, because the view is small: a full-rate disc of 24 pixels across among blocks of 4 and 8.
 const FOVEATION: Foveation = Foveation {
-    filter: afterimage::levels::Filter::Mip,
+    filter: afterimage::internal::Filter::Mip,
     fovea_deg: 7.0,
     mid_deg: 20.0,
     blend_deg: 2.0,

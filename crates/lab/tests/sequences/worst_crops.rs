@@ -1,6 +1,6 @@
 //! The law of smr: no crop of 64x64 pixels is visibly worse than in the foveated frame (H85).
 
-use afterimage::levels::{Filter, Foveation, Method, Settings, Smr};
+use afterimage::internal::{Filter, Foveation, Method, Settings, Smr};
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{Crops, WorstCrop, encode};
 use afterimage_lab::pipeline::{Pipeline, RunKind};

@@ -3,7 +3,7 @@
 
 use crate::shared_data::shared_data;
 use afterimage::ViewGeometry;
-use afterimage::levels::{Foveation, MethodKind, Settings};
+use afterimage::internal::{Foveation, MethodKind, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::error::InputError;
 use afterimage_lab::frame::RenderedFrame;

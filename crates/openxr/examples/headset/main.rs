@@ -7,7 +7,7 @@ mod plant;
 mod room;
 
 use afterimage_eval::scanpath::{Scanpath, read_csv};
-use afterimage_openxr::afterimage::levels::{Method, MethodKind, Settings, Smr};
+use afterimage_openxr::afterimage::internal::{Method, MethodKind, Settings, Smr};
 use afterimage_openxr::{Error, Headset, HeadsetDesc, HeadsetFrame, openxr as xr};
 use clap::Parser;
 use glam::{Mat4, Quat, Vec3};

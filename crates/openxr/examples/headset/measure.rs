@@ -2,7 +2,7 @@
 
 use crate::room::{Hands, Room, encoded};
 use afterimage_openxr::afterimage::gpu::{Afterimage, Frame};
-use afterimage_openxr::afterimage::levels::{ContextDesc, Foveation, MethodKind, Reset, Settings, ViewFrame};
+use afterimage_openxr::afterimage::internal::{ContextDesc, Foveation, MethodKind, Reset, Settings, ViewFrame};
 use afterimage_openxr::afterimage::{CreateError, DepthConvention, Gaze};
 use afterimage_openxr::wgpu::{self, TextureFormat, TextureUsages};
 use afterimage_openxr::{Eye, Shown, Targets};

@@ -5,7 +5,7 @@ use super::camera::{self, HFOV_DEG};
 use super::options::Options;
 use super::scenes::SceneInput;
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::levels::{ContextDesc, Foveation, Method, Reset, Settings, Smr, ViewFrame};
+use afterimage::internal::{ContextDesc, Foveation, Method, Reset, Settings, Smr, ViewFrame};
 use afterimage::{Gaze, Image, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::SourceFrame;

@@ -17,8 +17,8 @@ mod classes;
 mod edges;
 mod rows;
 
+use afterimage::internal::{Filter, Foveation, Method, Settings, Smr, ViewFrame};
 use afterimage::kernel::depth::disparity;
-use afterimage::levels::{Filter, Foveation, Method, Settings, Smr, ViewFrame};
 use afterimage::{DepthConvention, Gaze, Image, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::metric::{References, Tracker, encode};

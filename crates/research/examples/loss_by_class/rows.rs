@@ -6,7 +6,7 @@ use crate::edges::{Edges, Pictures};
 use afterimage::Image;
 use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
 use afterimage::internal::PixelNotes;
-use afterimage::levels::{ContextDesc, Filter, Foveation, Method, Reset, Settings, ViewFrame};
+use afterimage::internal::{ContextDesc, Filter, Foveation, Method, Reset, Settings, ViewFrame};
 use afterimage_eval::clip::pixel::ExplainedPixel;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::{Reference, Scorer, Tracked, encode};

@@ -1,8 +1,8 @@
 //! Time of one planned frame: its surfaces and chosen pixels, and smr.
 
 use afterimage::gpu::{Afterimage, Frame, Target};
+use afterimage::internal::{ContextDesc, Foveation, Settings, ViewFrame};
 use afterimage::kernel::quads::place_in_quad;
-use afterimage::levels::{ContextDesc, Foveation, Settings, ViewFrame};
 use afterimage::wgpu::{CommandEncoder, Texture, TextureFormat, TextureUsages};
 use afterimage::{DepthConvention, FrameError, Gaze, Image};
 use afterimage_eval::times::Times;

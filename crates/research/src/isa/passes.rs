@@ -2,8 +2,8 @@
 
 use super::failure::Result;
 use afterimage::gpu::{Afterimage, Frame};
+use afterimage::internal::{ContextDesc, Foveation, Method, MethodKind, Sampler, Settings, Smr, ViewFrame, Wrs};
 use afterimage::kernel::quads::RUN_QUADS;
-use afterimage::levels::{ContextDesc, Foveation, Method, MethodKind, Sampler, Settings, Smr, ViewFrame, Wrs};
 use afterimage::shader::{Composer, Module, SHADERS};
 use afterimage::wgpu::{Device, DeviceDescriptor, Extent3d, TextureDescriptor, TextureDimension, TextureFormat};
 use afterimage::{Gaze, ViewGeometry};

@@ -6,7 +6,7 @@ mod invalid_colors;
 
 use crate::parts::{PARTS, shader_without};
 use afterimage::ViewGeometry;
-use afterimage::levels::{DepthTest, Foveation, Method, MethodKind, Pyramid, Settings};
+use afterimage::internal::{DepthTest, Foveation, Method, MethodKind, Pyramid, Settings};
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::frame::{FoveatedFrame, RenderedFrame};
@@ -77,13 +77,13 @@ fn runs(kind: MethodKind, foveation: Foveation) -> Vec<(&'static str, RunKind)> 
     runs
 }
 
-fn with_wrs(settings: &mut Settings, change: impl Fn(&mut afterimage::levels::Wrs)) {
+fn with_wrs(settings: &mut Settings, change: impl Fn(&mut afterimage::internal::Wrs)) {
     if let Method::Wrs(wrs) = &mut settings.method {
         change(wrs);
     }
 }
 
-fn with_smr(settings: &mut Settings, change: impl Fn(&mut afterimage::levels::Smr)) {
+fn with_smr(settings: &mut Settings, change: impl Fn(&mut afterimage::internal::Smr)) {
     if let Method::Smr(smr) = &mut settings.method {
         change(smr);
     }

@@ -77,7 +77,7 @@ fn commands_name_what_exists() {
 #[test]
 fn a_command_that_names_nothing_is_found() {
     let names = Names::read(&Tree::read());
-    let sound = "`cargo test -p afterimage-lab --test sources -- --test x`, `cargo run --features gpu,cpu --example 04_cpu`\n\
+    let sound = "`cargo test -p afterimage-lab --test sources -- --test x`, `cargo run --features gpu,cpu --example 07_levels`\n\
         cargo test --test house -- --test-threads 2\n--test lonely\ncargo run --example \"$example\"";
     assert_eq!(names.unknown(sound), Vec::<String>::new());
     let planted =

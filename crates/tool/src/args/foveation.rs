@@ -3,7 +3,7 @@
 use super::number::{parse_percent, parse_scale};
 use super::{Named, by_name};
 use crate::failure::Failure;
-use afterimage::levels::{Filter, Foveation, Method, Settings};
+use afterimage::internal::{Filter, Foveation, Method, Settings};
 use afterimage_lab::quad_views::{Geometry, QuadViewLayout};
 use clap::builder::TypedValueParser;
 use clap::error::ErrorKind;

@@ -1,7 +1,7 @@
 //! Methods and their settings.
 
 use super::{Named, by_name};
-use afterimage::levels::{
+use afterimage::internal::{
     Bias, DepthTest, Gate, GateMetric, GateScale, Method, MethodKind, Sampler, Settings, Smr, Wrs,
 };
 use clap::{Args, ValueEnum};

@@ -1,6 +1,6 @@
 //! Settings as Rust source.
 
-use afterimage::levels::{Bias, Foveation, Method, Settings, Smr, Wrs};
+use afterimage::internal::{Bias, Foveation, Method, Settings, Smr, Wrs};
 
 /// Settings that have a name.
 fn named() -> [(&'static str, Settings); 2] {
@@ -109,7 +109,7 @@ impl<'a, T> Literal<'a, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use afterimage::levels::{DepthTest, Filter, Gate, GateMetric, GateScale, Sampler};
+    use afterimage::internal::{DepthTest, Filter, Gate, GateMetric, GateScale, Sampler};
 
     /// Checks that the text of the settings is the macro's argument, which compiles.
     macro_rules! round_trip {

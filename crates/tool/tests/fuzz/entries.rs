@@ -5,7 +5,7 @@
 mod sound_scene;
 
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::levels::{
+use afterimage::internal::{
     Bias, ContextDesc, DepthTest, Filter, Foveation, Gate, GateMetric, GateScale, Method, Reset, Sampler, Settings,
     Smr, ViewFrame, Wrs,
 };

@@ -3,7 +3,7 @@
 use super::executor::DeviceExecutor;
 use crate::device::Backend;
 use afterimage::CreateError;
-use afterimage::levels::ContextDesc;
+use afterimage::internal::ContextDesc;
 use afterimage_eval::pipeline::{Cpu, Executor, Processor, ProcessorInfo};
 
 impl Processor for Backend {

@@ -6,8 +6,8 @@ use crate::device::{Headless, PassClock};
 use crate::frame::{Content, DeviceHandle, RenderedFrame, Shaded, ShadedColor, ShadingRequest};
 use afterimage::Image;
 use afterimage::gpu::Frame;
+use afterimage::internal::ContextDesc;
 use afterimage::kernel::quads::place_in_quad;
-use afterimage::levels::ContextDesc;
 use afterimage::{CreateError, DebugView, FrameError};
 use afterimage_eval::pipeline::{
     Candidate, Chosen, Executor, MethodOutput, RunInputs, RunKind, Shade, chooses, unshaded,

@@ -3,8 +3,8 @@
 use super::{DeviceFormats, WRITTEN};
 use crate::device::Headless;
 use afterimage::gpu::{Afterimage, Frame, Recorded, Target, Timestamps};
+use afterimage::internal::ContextDesc;
 use afterimage::internal::{Sources, method_pass};
-use afterimage::levels::ContextDesc;
 use afterimage::{CreateError, DebugView, FrameError, FrameStats};
 use std::sync::Arc;
 use wgpu::{Buffer, CommandEncoder, Texture};

@@ -24,7 +24,7 @@ use super::view::View;
 use super::work::Spans;
 use super::world::World;
 use crate::frame::FoveatedFrame;
-use afterimage::levels::{Filter, Foveation};
+use afterimage::internal::{Filter, Foveation};
 use afterimage::{Image, ViewGeometry};
 use circle::Circle;
 use rings::{Blended, Ring};

@@ -5,7 +5,7 @@ use super::quad_views;
 use super::rig::{FAST, psnr_db};
 use crate::given::device;
 use afterimage::Image;
-use afterimage::levels::{Foveation, MethodKind, Settings};
+use afterimage::internal::{Foveation, MethodKind, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::encode;
 use afterimage_lab::pipeline::{Pipeline, RunKind};

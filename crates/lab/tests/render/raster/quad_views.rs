@@ -3,7 +3,7 @@
 use super::noise::{flat, noise, views};
 use super::rig::{FAST, Frame, Rig};
 use crate::given::device;
-use afterimage::levels::Foveation;
+use afterimage::internal::Foveation;
 use afterimage::{Image, ViewGeometry};
 use afterimage_lab::frame::OnDevice;
 use afterimage_lab::quad_views::{QuadView, QuadViewLayout, QuadViews};

@@ -1,7 +1,7 @@
 //! Pixels that methods choose, path-traced after their choice, with numbers of paths of their own.
 
 use crate::given::backends;
-use afterimage::levels::{Foveation, MethodKind, Settings};
+use afterimage::internal::{Foveation, MethodKind, Settings};
 use afterimage::{Image, ViewGeometry};
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::{Content, RenderedFrame, Shaded, ShadedColor, ShadingRequest};

@@ -4,7 +4,7 @@ mod crop;
 mod flip;
 mod weighted;
 
-use afterimage::levels::{Foveation, Pyramid};
+use afterimage::internal::{Foveation, Pyramid};
 use afterimage::{Image, ViewGeometry};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::{self, Band, Flip, NO_PAST, References, Scorer, Scores, Tracker};

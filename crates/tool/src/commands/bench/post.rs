@@ -3,10 +3,10 @@
 use super::BenchArgs;
 use crate::failure::Failure;
 use crate::output::write_json;
-use afterimage::kernel::rng;
-use afterimage::levels::{
+use afterimage::internal::{
     ContextDesc, Filter, Foveation, GpuSimulator, MethodKind, Reset, Settings, SimulatorFrame, ViewFrame,
 };
+use afterimage::kernel::rng;
 use afterimage::module;
 use afterimage::shader::{Composer, Module};
 use afterimage::wgpu::{Texture, TextureUsages};

@@ -7,7 +7,7 @@ use crate::clip::title;
 use crate::output::{Output, WriteError};
 use crate::report::frame_plot::{FramePlot, Quantity, Series};
 use crate::report::plot::png;
-use afterimage::levels::MethodKind;
+use afterimage::internal::MethodKind;
 use afterimage_eval::metric::{BandScores, FrameErrors, Scores};
 use afterimage_eval::report::sheet::{Column, Sheet};
 use afterimage_metric::Display;

@@ -9,7 +9,7 @@ mod scene;
 use crate::args::channels::ChannelArgs;
 use crate::args::gaze_log::GazeLogArgs;
 use crate::failure::{Failure, with_options};
-use afterimage::levels::{ContextDesc, Filter, Reset, ViewFrame};
+use afterimage::internal::{ContextDesc, Filter, Reset, ViewFrame};
 use afterimage::{Gaze, ViewGeometry, cpu};
 use afterimage_eval::exposure::Exposure;
 use afterimage_lab::error::InputError;

@@ -22,7 +22,7 @@ use crate::progress;
 use crate::report::cameras::cameras_json;
 use crate::video::SideBySide;
 use afterimage::DebugView;
-use afterimage::levels::Filter;
+use afterimage::internal::Filter;
 use afterimage_eval::exposure::Exposure;
 use afterimage_eval::metric;
 use afterimage_lab::device::Backend;

@@ -8,7 +8,7 @@ use crate::args::{MethodName, Named};
 use crate::clip::pixel::ExplainedPixel;
 use crate::clip::{self, Clip, title};
 use crate::failure::Failure;
-use afterimage::levels::{Filter, Foveation, MethodKind, Settings};
+use afterimage::internal::{Filter, Foveation, MethodKind, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::pipeline::RunKind;
 use afterimage_lab::quad_views::QuadViewLayout;

@@ -5,7 +5,7 @@ use crate::clip::ClipReport;
 use crate::output::{Output, WriteError};
 use crate::report::frame_plot::{FramePlot, Quantity, Series};
 use crate::report::plot::png;
-use afterimage::levels::Filter;
+use afterimage::internal::Filter;
 use afterimage_lab::quad_views::QuadViewLayout;
 use std::path::Path;
 

@@ -6,7 +6,7 @@ use crate::args::{FilterName, MethodName};
 use crate::commands::run::RunArgs;
 use crate::failure::Failure;
 use crate::sweep::{Options, Point};
-use afterimage::levels::{Filter, MethodKind};
+use afterimage::internal::{Filter, MethodKind};
 use std::collections::BTreeMap;
 
 /// Limit on points per batch: an interrupted sweep loses at most one batch.

@@ -5,7 +5,7 @@ use super::device;
 use crate::failure::Failure;
 use afterimage::doctor::Finding;
 use afterimage::gpu::{Doctor, Frame};
-use afterimage::levels::{ContextDesc, Reset};
+use afterimage::internal::{ContextDesc, Reset};
 use afterimage::wgpu::{self, Buffer, BufferUsages};
 use afterimage_lab::device::{Headless, mapped};
 use std::collections::VecDeque;
@@ -82,7 +82,7 @@ impl Examiner {
 mod tests {
     use super::*;
     use afterimage::doctor::Fault;
-    use afterimage::levels::{Filter, ViewFrame};
+    use afterimage::internal::{Filter, ViewFrame};
     use afterimage::{Gaze, Image, ViewGeometry};
     use wgpu::{TextureFormat, TextureUsages};
 

@@ -4,7 +4,7 @@ use super::ViewArgs;
 use super::state::{Shows, Side, State};
 use crate::args::gaze_log::GazeLogArgs;
 use crate::args::{FilterName, Named};
-use afterimage::levels::Filter;
+use afterimage::internal::Filter;
 use clap::{Args, Command};
 use std::path::Path;
 

@@ -2,7 +2,7 @@
 
 use super::state::{Action, Shows, Side, State};
 use crate::args::{FilterName, Named};
-use afterimage::levels::Filter;
+use afterimage::internal::Filter;
 use winit::keyboard::KeyCode;
 
 /// Keys that have to be held. A key without any may be pressed together with Shift.

@@ -34,7 +34,7 @@ use crate::args::gaze_log::GazeLogArgs;
 use crate::args::input::{InputArgs, Rendering};
 use crate::args::{FoveationArgs, MethodArgs, by_name, parse_frames, parse_stops};
 use crate::failure::Failure;
-use afterimage::levels::Filter;
+use afterimage::internal::Filter;
 use afterimage_lab::scanpath::GazeMap;
 use app::App;
 use clap::Args;

@@ -57,7 +57,7 @@ pub fn click(state: &State, lines: usize, panel: [u32; 2], at: [f32; 2]) -> Opti
 mod tests {
     use super::super::state::{Shows, Side, tests::state};
     use super::*;
-    use afterimage::levels::MethodKind;
+    use afterimage::internal::MethodKind;
 
     /// The action of a click on the row of that name.
     fn click_on(state: &State, name: &str) -> Option<Action> {

@@ -8,7 +8,7 @@ use super::times::{Pass, PassTimes};
 use crate::failure::Failure;
 use afterimage::doctor::Finding;
 use afterimage::gpu::Frame;
-use afterimage::levels::{ContextDesc, Filter, Foveation, MethodKind, Reset, Settings, ViewFrame};
+use afterimage::internal::{ContextDesc, Filter, Foveation, MethodKind, Reset, Settings, ViewFrame};
 use afterimage::wgpu::{CommandEncoder, Texture};
 use afterimage::{Gaze, ViewGeometry};
 use afterimage_lab::device::Headless;

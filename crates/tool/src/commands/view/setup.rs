@@ -8,7 +8,7 @@ use crate::args::input;
 use crate::args::{FilterName, FoveationArgs};
 use crate::failure::Failure;
 use afterimage::ViewGeometry;
-use afterimage::levels::{Filter, MethodKind, Settings};
+use afterimage::internal::{Filter, MethodKind, Settings};
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::scanpath::HeadPath;
 use afterimage_lab::source::SourceInfo;

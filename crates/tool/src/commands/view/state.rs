@@ -2,7 +2,7 @@
 
 use crate::args::{FilterName, Named};
 use afterimage::DebugView;
-use afterimage::levels::{Filter, MethodKind};
+use afterimage::internal::{Filter, MethodKind};
 
 /// What a side of the picture shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

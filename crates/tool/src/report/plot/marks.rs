@@ -1,6 +1,6 @@
 //! Marks of the methods: a color that is distinguishable with color blindness, and a shape.
 
-use afterimage::levels::MethodKind;
+use afterimage::internal::MethodKind;
 
 /// Mark of a method.
 #[derive(Clone, Copy)]

@@ -4,9 +4,9 @@
 //! The post-process adds to an application the fields `post`, `output` and `gaze` of `App` and the lines marked (1) to
 //! (4).
 //!
-//! `cargo run --example 06_window` (closes by itself after AFTERIMAGE_FRAMES frames, if that is set)
+//! `cargo run --example 04_window` (closes by itself after AFTERIMAGE_FRAMES frames, if that is set)
 
-use afterimage::levels::{Afterimage, ContextDesc, Frame, GpuSimulator, SimulatorFrame, ViewFrame};
+use afterimage::levels::{Afterimage, Desc, Frame, Simulator, SimulatorFrame, ViewFrame};
 use afterimage::wgpu::{self, CurrentSurfaceTexture, TextureFormat, TextureUsages, util::TextureBlitter};
 use afterimage::{Gaze, ViewGeometry};
 use std::{error::Error, sync::Arc};
@@ -36,7 +36,7 @@ struct App {
 /// Placeholder for your renderer: a pattern, foveated by the simulator.
 struct Renderer {
     pattern: wgpu::Texture,
-    foveation: GpuSimulator,
+    foveation: Simulator,
     color: wgpu::Texture,
 }
 
@@ -63,7 +63,7 @@ impl Renderer {
             .collect();
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * size[0]), rows_per_image: None };
         queue.write_texture(pattern.as_image_copy(), bytemuck::cast_slice(&pixels), layout, pattern.size());
-        let foveation = GpuSimulator::new(device, &ContextDesc::new(size), FORMAT)?;
+        let foveation = Simulator::new(device, &Desc::new(size, FORMAT))?;
         Ok(Self { pattern, foveation, color: texture(device, size, FORMAT) })
     }
 }
@@ -82,7 +82,7 @@ impl App {
         surface.configure(&device, &config);
         Ok(Self {
             // (1)
-            post: Afterimage::new(&device, &ContextDesc::new(size), FORMAT)?,
+            post: Afterimage::new(&device, &Desc::new(size, FORMAT))?,
             output: texture(&device, size, FORMAT),
             blitter: TextureBlitter::new(&device, config.format),
             renderer: Renderer::new(&device, &queue, size)?,
@@ -124,7 +124,7 @@ impl App {
         let views = [ViewFrame::new(geometry, self.gaze)];
         // Your renderer would draw the foveated frame here.
         let Renderer { pattern, foveation, color } = &mut self.renderer;
-        foveation.record(&self.device, &mut encoder, &SimulatorFrame::new(pattern, color, &views))?;
+        foveation.record(&mut encoder, &SimulatorFrame::new(pattern, color, &views))?;
         // (3) The post-process.
         let frame = Frame::new(&*color, &views, self.index);
         self.post.record(&mut encoder, &frame, &self.output)?;

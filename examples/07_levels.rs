@@ -1,10 +1,10 @@
 //! Frames that the renderer foveates itself: two frames in, one image out, without a window.
 //!
-//! `cargo run --example 09_levels` (any adapter; software Vulkan: mesa-vulkan-drivers)
+//! `cargo run --example 07_levels` (any adapter; software Vulkan: mesa-vulkan-drivers)
 
 mod headless;
 
-use afterimage::levels::{Afterimage, ContextDesc, Frame, ViewFrame};
+use afterimage::levels::{Afterimage, Desc, Frame, ViewFrame};
 use afterimage::wgpu::{TextureFormat, TextureUsages};
 use afterimage::{Gaze, ViewGeometry};
 use headless::Headless;
@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let color = gpu.texture(SIZE, 1, TextureFormat::Rgba32Float, read | TextureUsages::COPY_DST);
     let output = gpu.texture(SIZE, 1, TextureFormat::Rgba32Float, write | TextureUsages::COPY_SRC);
 
-    let mut post = Afterimage::new(&gpu.device, &ContextDesc::new(SIZE), output.format())?;
+    let mut post = Afterimage::new(&gpu.device, &Desc::new(SIZE, output.format()))?;
     // Frame 0: the gaze is left, and the renderer shades sharp stripes. Frame 1: the gaze is right, and the stripes are
     // blurred.
     for (index, gaze_x, sharp) in [(0, 50.0, true), (1, 200.0, false)] {

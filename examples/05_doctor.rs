@@ -1,7 +1,7 @@
 //! A doctor looks at planned frames whose motion vectors are of objects alone, which the description does not say. It
 //! says so, and which line of code mends it.
 //!
-//! `cargo run --example 07_doctor` (any adapter; software Vulkan: mesa-vulkan-drivers)
+//! `cargo run --example 05_doctor` (any adapter; software Vulkan: mesa-vulkan-drivers)
 
 mod headless;
 

@@ -4,7 +4,7 @@
 //! What a renderer adds to depth of every pixel: a mask. Any pattern does that visits every pixel in some frame. Of
 //! quads of 2x2 with one pixel, color may have half the width and height (`show_quarter`).
 //!
-//! `cargo run --release --example 08_own_mask` (any adapter; software Vulkan: mesa-vulkan-drivers)
+//! `cargo run --release --example 06_own_mask` (any adapter; software Vulkan: mesa-vulkan-drivers)
 
 mod headless;
 
