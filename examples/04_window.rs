@@ -1,71 +1,50 @@
-//! The smallest application with a window: a renderer draws a foveated frame, `record` writes the output texture, and a
-//! blit copies that to the swapchain. The mouse is the gaze.
+//! The smallest application with a window: a renderer draws a tenth of the pixels, most of them around the mouse, which
+//! is the gaze, and a blit copies the picture to the swapchain.
 //!
-//! The post-process adds to an application the fields `post`, `output` and `gaze` of `App` and the lines marked (1) to
-//! (4).
+//! The post-process adds to an application the fields `post` and `gaze` and two of the `targets` of `App`, and the lines
+//! marked (1) to (4).
 //!
-//! `cargo run --example 04_window` (closes by itself after AFTERIMAGE_FRAMES frames, if that is set)
+//! `cargo run --release --example 04_window` (closes by itself after AFTERIMAGE_FRAMES frames, if that is set)
 
-use afterimage::levels::{Afterimage, Desc, Frame, Simulator, SimulatorFrame, ViewFrame};
-use afterimage::wgpu::{self, CurrentSurfaceTexture, TextureFormat, TextureUsages, util::TextureBlitter};
-use afterimage::{Gaze, ViewGeometry};
+mod headless;
+
+use afterimage::wgpu::{self, CurrentSurfaceTexture, Texture, TextureFormat, TextureUsages, util::TextureBlitter};
+use afterimage::{Afterimage, Camera, Desc, Frame, Gaze, MotionConvention, Shading};
+use glam::{Mat4, Vec3, camera::rh::proj::directx::perspective_infinite_reverse};
+use headless::Headless;
+use headless::renderer::{DEPTH, MOTION, Renderer, View};
 use std::{error::Error, sync::Arc};
 use winit::application::ApplicationHandler;
 use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, EventLoop};
 use winit::window::{Window, WindowId};
 
-/// Output format. Compute shaders can rarely write a swapchain's format: write this one, and draw it to the screen.
+/// Format of colors and of the picture. Compute shaders can rarely write a swapchain's format: write this one, and draw
+/// it to the screen.
 const FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 
-/// The application: a window, its device, and the post-process.
+/// The application: a window, its device, a renderer, and the post-process.
 struct App {
     window: Arc<Window>,
-    device: wgpu::Device,
-    queue: wgpu::Queue,
+    gpu: Headless,
     surface: wgpu::Surface<'static>,
     config: wgpu::SurfaceConfiguration,
     blitter: TextureBlitter,
     renderer: Renderer,
+    /// Depth, a copy of it to close, motion vectors, colors, and the picture.
+    targets: [Texture; 5],
     post: Afterimage,
-    output: wgpu::Texture,
     gaze: Gaze,
     index: u64,
 }
 
-/// Placeholder for your renderer: a pattern, foveated by the simulator.
-struct Renderer {
-    pattern: wgpu::Texture,
-    foveation: Simulator,
-    color: wgpu::Texture,
-}
-
-fn texture(device: &wgpu::Device, [width, height]: [u32; 2], format: TextureFormat) -> wgpu::Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING | TextureUsages::COPY_DST,
-        view_formats: &[],
-    })
-}
-
-impl Renderer {
-    fn new(device: &wgpu::Device, queue: &wgpu::Queue, size: [u32; 2]) -> Result<Self, Box<dyn Error>> {
-        let pattern = texture(device, size, TextureFormat::Rgba32Float);
-        let pixels: Vec<[f32; 4]> = (0..size[0] * size[1])
-            .map(|i| [i % size[0], i / size[0]].map(|v| v as f32))
-            .map(|[x, y]| 0.5 + 0.5 * (x.hypot(y) * 0.4).sin() * (x * 0.13 + (y * 0.05).sin() * 3.0).sin())
-            .map(|line| [0.9 * line, 0.7 * line, 0.3, 1.0])
-            .collect();
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * size[0]), rows_per_image: None };
-        queue.write_texture(pattern.as_image_copy(), bytemuck::cast_slice(&pixels), layout, pattern.size());
-        let foveation = Simulator::new(device, &Desc::new(size, FORMAT))?;
-        Ok(Self { pattern, foveation, color: texture(device, size, FORMAT) })
-    }
+fn targets(gpu: &Headless, size: [u32; 2]) -> [Texture; 5] {
+    let read = TextureUsages::TEXTURE_BINDING;
+    let drawn = TextureUsages::RENDER_ATTACHMENT | read;
+    let (from, to) = (drawn | TextureUsages::COPY_SRC, drawn | TextureUsages::COPY_DST);
+    let usages = [from, to, drawn, drawn, TextureUsages::STORAGE_BINDING | read];
+    let formats = [DEPTH, DEPTH, MOTION, FORMAT, FORMAT];
+    std::array::from_fn(|i| gpu.texture(size, 1, formats[i], usages[i]))
 }
 
 impl App {
@@ -77,20 +56,23 @@ impl App {
         let adapter = pollster::block_on(instance.request_adapter(&options))?;
         // No features, and no more than WebGPU's limits.
         let (device, queue) = pollster::block_on(adapter.request_device(&Default::default()))?;
+        let gpu = Headless { device, queue };
         let size = [window.inner_size().width.max(1), window.inner_size().height.max(1)];
         let config = surface.get_default_config(&adapter, size[0], size[1]).ok_or("no format for this window")?;
-        surface.configure(&device, &config);
+        surface.configure(&gpu.device, &config);
+        // (1) A tenth of the pixels; the renderer's vectors are of objects alone.
+        let motion = Some(MotionConvention { without_camera: true, ..MotionConvention::BEVY });
+        let shading = Shading::Gaze { fovea_deg: 5.0, share: 0.08 };
+        let post = Afterimage::new(&gpu.device, &Desc { motion, shading, ..Desc::new(size, FORMAT) })?;
         Ok(Self {
-            // (1)
-            post: Afterimage::new(&device, &Desc::new(size, FORMAT))?,
-            output: texture(&device, size, FORMAT),
-            blitter: TextureBlitter::new(&device, config.format),
-            renderer: Renderer::new(&device, &queue, size)?,
+            blitter: TextureBlitter::new(&gpu.device, config.format),
+            renderer: Renderer::new(&gpu, FORMAT, FORMAT),
+            targets: targets(&gpu, size),
+            post,
             gaze: Gaze::Lost,
             index: 0,
             window,
-            device,
-            queue,
+            gpu,
             surface,
             config,
         })
@@ -100,9 +82,8 @@ impl App {
         // A minimised window is 0x0: keep the context and its history.
         if !size.contains(&0) && size != [self.config.width, self.config.height] {
             [self.config.width, self.config.height] = size;
-            self.surface.configure(&self.device, &self.config);
-            self.renderer = Renderer::new(&self.device, &self.queue, size)?;
-            self.output = texture(&self.device, size, FORMAT);
+            self.surface.configure(&self.gpu.device, &self.config);
+            self.targets = targets(&self.gpu, size);
             // (2) Discards history.
             self.post.resize(size)?;
         }
@@ -110,29 +91,36 @@ impl App {
     }
 
     fn frame(&mut self) -> Result<(), Box<dyn Error>> {
-        let target = match self.surface.get_current_texture() {
-            CurrentSurfaceTexture::Success(target) | CurrentSurfaceTexture::Suboptimal(target) => target,
+        let screen = match self.surface.get_current_texture() {
+            CurrentSurfaceTexture::Success(screen) | CurrentSurfaceTexture::Suboptimal(screen) => screen,
             CurrentSurfaceTexture::Outdated => {
-                self.surface.configure(&self.device, &self.config);
+                self.surface.configure(&self.gpu.device, &self.config);
                 return Ok(());
             }
             CurrentSurfaceTexture::Lost | CurrentSurfaceTexture::Validation => return Err("the surface is lost".into()),
             CurrentSurfaceTexture::Timeout | CurrentSurfaceTexture::Occluded => return Ok(()),
         };
-        let mut encoder = self.device.create_command_encoder(&Default::default());
-        let geometry = ViewGeometry::flat([self.config.width, self.config.height], 70.0)?;
-        let views = [ViewFrame::new(geometry, self.gaze)];
-        // Your renderer would draw the foveated frame here.
-        let Renderer { pattern, foveation, color } = &mut self.renderer;
-        foveation.record(&mut encoder, &SimulatorFrame::new(pattern, color, &views))?;
-        // (3) The post-process.
-        let frame = Frame::new(&*color, &views, self.index);
-        self.post.record(&mut encoder, &frame, &self.output)?;
+        let (gpu, [depth, closed, motion, color, picture]) = (&self.gpu, &self.targets);
+        let aspect = self.config.width as f32 / self.config.height as f32;
+        let clip_from_view = perspective_infinite_reverse(0.75, aspect, 0.1).to_cols_array_2d();
+        let seconds = [self.index, self.index.saturating_sub(1)].map(|index| index as f32 / 60.0);
+        let world_from_view = Mat4::from_translation(Vec3::new(0.5 * seconds[0].sin(), 1.5, 0.0));
+        // (3) The post-process: all of the frame is drawn with the jittered projection, colors where depth is left.
+        let jittered = Mat4::from_cols_array_2d(&self.post.jittered(clip_from_view));
+        let view = View { clip_from_world: jittered * world_from_view.inverse(), seconds, layer: 0 };
+        let camera = Camera { gaze: self.gaze, ..Camera::new(clip_from_view, world_from_view.to_cols_array_2d()) };
+        let mut encoder = gpu.encoder();
+        self.renderer.prepass(gpu, &mut encoder, [motion, depth], view);
+        let plan = self.post.plan(&mut encoder, &Frame { motion: Some(motion), ..Frame::new(depth, camera) })?;
+        encoder.copy_texture_to_texture(depth.as_image_copy(), closed.as_image_copy(), depth.size());
+        self.post.close(&mut encoder, &plan, closed)?;
+        self.renderer.colors(gpu, &mut encoder, [color, closed], view);
+        self.post.show(&mut encoder, plan, color, picture)?;
         // Your tone mapping would come here.
-        let [output, screen] = [&self.output, &target.texture].map(|t| t.create_view(&Default::default()));
-        self.blitter.copy(&self.device, &mut encoder, &output, &screen);
-        self.queue.submit([encoder.finish()]);
-        self.queue.present(target);
+        let [picture, shown] = [picture, &screen.texture].map(|t| t.create_view(&Default::default()));
+        self.blitter.copy(&gpu.device, &mut encoder, &picture, &shown);
+        gpu.submit(encoder);
+        gpu.queue.present(screen);
         self.index += 1;
         Ok(())
     }

@@ -31,7 +31,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let shown = gpu.read(&output, 0);
     let row = &shown[32 * SIZE[0] as usize..][..SIZE[0] as usize];
-    let kept = |x: std::ops::Range<usize>| 100 * row[x.clone()].iter().filter(|c| c[0] != 0.5).count() / x.len();
+    let kept = |range: std::ops::Range<usize>| {
+        let stripes = range.clone().filter(|&x| (row[x][0] - (x % 2) as f32).abs() < 0.05);
+        100 * stripes.count() / range.len()
+    };
     println!("stripes still seen on the left, where the eye was: {} %", kept(40..60));
     println!("and further out, where it never looked: {} %", kept(110..130));
     Ok(())

@@ -20,7 +20,7 @@ struct View { clip_from_world: mat4x4f, seconds: f32, seconds_before: f32 }
 
 struct Varying {
     @invariant @builtin(position) position: vec4f,
-    @location(0) world: vec3f,
+    @location(0) place: vec3f,
     @location(1) now: vec4f,
     @location(2) before: vec4f,
     @location(3) @interpolate(flat) object: u32,
@@ -46,7 +46,8 @@ fn world_at(object: u32, i: u32, seconds: f32) -> vec3f {
     let world = world_at(object, i, view.seconds);
     let now = view.clip_from_world * vec4f(world, 1.0);
     let before = view.clip_from_world * vec4f(world_at(object, i, view.seconds_before), 1.0);
-    return Varying(now, world, now, before, object);
+    // The texture moves with the object.
+    return Varying(now, world_at(object, i, 0.0), now, before, object);
 }
 
 @fragment fn motion(in: Varying) -> @location(0) vec2f {
@@ -55,7 +56,7 @@ fn world_at(object: u32, i: u32, seconds: f32) -> vec3f {
 
 @fragment fn color(in: Varying) -> @location(0) vec4f {
     if in.object == SKY { return vec4f(0.4, 0.6, 0.9, 1.0); }
-    let plane = select(in.world.xz * 12.0, (in.world.xy + in.world.z) * 30.0, in.object == BOX);
+    let plane = select(in.place.xz * 12.0, (in.place.xy + in.place.z) * 30.0, in.object == BOX);
     let wave = sin(plane) * (1.0 - smoothstep(vec2f(1.2), vec2f(3.0), fwidth(plane)));
     return vec4f(vec3f(0.5, 0.45, 0.4) + 0.3 * wave.x * wave.y, 1.0);
 }
