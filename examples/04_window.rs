@@ -1,8 +1,8 @@
 //! The smallest application with a window: a renderer draws a tenth of the pixels, most of them around the mouse, which
 //! is the gaze, and a blit copies the picture to the swapchain.
 //!
-//! The post-process adds to an application the fields `post` and `gaze` and two of the `targets` of `App`, and the lines
-//! marked (1) to (4).
+//! The post-process adds to an application the fields `post` and `gaze` and two of the `targets` of `App`, and the
+//! lines marked (1) to (4).
 //!
 //! `cargo run --release --example 04_window` (closes by itself after AFTERIMAGE_FRAMES frames, if that is set)
 

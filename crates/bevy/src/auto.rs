@@ -4,9 +4,11 @@
 use crate::components::{Afterimage, Foveated, FoveationKind};
 use crate::layers::LayersFound;
 use afterimage::{SettingsError, ShareControl};
+use bevy::anti_alias::taa::TemporalAntiAliasing;
 use bevy::diagnostic::{Diagnostic, DiagnosticMeasurement, DiagnosticsStore};
 use bevy::platform::time::Instant;
 use bevy::prelude::*;
+use bevy::render::camera::{MipBias, TemporalJitter};
 use bevy::time::Real;
 
 /// Smallest share.
@@ -118,7 +120,7 @@ pub(crate) struct AutoPlugin;
 
 impl Plugin for AutoPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(PostUpdate, control.before(LayersFound));
+        app.add_systems(PostUpdate, (control, stand_in).chain().before(LayersFound));
     }
 }
 
@@ -164,6 +166,26 @@ fn control(
                 }
                 Err(problem) => error_once!("Foveated::auto of camera {camera}: {problem}"),
             },
+        }
+    }
+}
+
+/// Marks cameras that have Bevy's temporal antialiasing from this plugin.
+#[derive(Component)]
+struct StandsIn;
+
+type Antialiased<'a> = (Entity, Option<&'a Foveated>, Option<&'a Afterimage>, Has<StandsIn>, Has<TemporalAntiAliasing>);
+
+/// Has Bevy antialias as long as [`Foveated::auto`] leaves foveation out.
+fn stand_in(mut commands: Commands, cameras: Query<Antialiased, With<Camera>>) {
+    for (camera, foveated, afterimage, stands_in, has_taa) in &cameras {
+        let is_out = foveated.is_some_and(|f| f.target_fps.is_some() && f.kind == FoveationKind::Off);
+        let is_needed = is_out && afterimage.is_some_and(|afterimage| afterimage.antialias);
+        if is_needed && !has_taa {
+            commands.entity(camera).insert((StandsIn, TemporalAntiAliasing::default()));
+        } else if !is_needed && stands_in {
+            // With what it requires, but for the prepasses, which are ours, too.
+            commands.entity(camera).remove::<(StandsIn, TemporalAntiAliasing, TemporalJitter, MipBias)>();
         }
     }
 }

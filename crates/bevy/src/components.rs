@@ -110,8 +110,9 @@ impl Foveated {
     /// timestamps, and by that of the whole frame else. With vertical synchronization the latter does not show spare
     /// time, and the share does not grow again.
     ///
-    /// Where the target is missed and foveation does not pay, it is [`FoveationKind::Off`] until the load changes. Such
-    /// frames are not antialiased, which one sees.
+    /// Where the target is missed and foveation does not pay, it is [`FoveationKind::Off`] until the load changes. With
+    /// [`antialias`](Afterimage::antialias) such frames have Bevy's `TemporalAntiAliasing`, which begins without
+    /// history: edges are rough for some frames.
     ///
     /// ```
     /// use bevy_afterimage::Foveated;

@@ -1,9 +1,12 @@
 //! `Foveated::auto` on scripted loads: measured milliseconds go in, shares come out. Only the last test needs a device.
 
+use crate::common::headless::{Headless, psnr_db};
 use crate::{aliased, courtyard};
+use bevy::anti_alias::taa::TemporalAntiAliasing;
 use bevy::prelude::*;
+use bevy::render::camera::TemporalJitter;
 use bevy_afterimage::testing::Auto;
-use bevy_afterimage::{Foveated, FoveationKind};
+use bevy_afterimage::{Afterimage, Foveated, FoveationKind};
 
 /// Milliseconds of a frame at 60 Hz.
 const TARGET: f32 = 1e3 / 60.0;
@@ -175,4 +178,55 @@ fn a_camera_follows_its_target() {
         assert_eq!(headless.problems(), &[] as &[String]);
         assert!(headless.read().iter().any(|&byte| byte > 150), "a dark frame");
     }
+}
+
+/// Runs a camera whose target is always missed until foveation is left out, and for some frames more, if that lasts.
+/// Its picture, and whether Bevy antialiases.
+fn left_out(afterimage: Afterimage) -> (Vec<u8>, bool) {
+    let mut headless = courtyard((afterimage, Foveated::auto(1e6)));
+    let mut cameras = headless.app.world_mut().query::<(&Foveated, Has<TemporalAntiAliasing>)>();
+    for _ in 0..120 {
+        headless.frames(1);
+        let (foveated, _) = cameras.single(headless.app.world()).expect("a camera");
+        if foveated.kind == FoveationKind::Off {
+            headless.frames(3);
+            let (foveated, has_taa) = cameras.single(headless.app.world()).expect("a camera");
+            assert_eq!(foveated.kind, FoveationKind::Off, "the try lasts for five measured frames");
+            assert_eq!(headless.problems(), &[] as &[String]);
+            return (headless.read(), has_taa);
+        }
+    }
+    panic!("foveation is never left out");
+}
+
+#[test]
+fn bevy_antialiases_while_foveation_is_left_out() {
+    let [(picture, has_taa), (rough, has_none)] = [Afterimage::default(), aliased()].map(left_out);
+    assert!(has_taa && !has_none);
+    let psnr = psnr_db(&picture, &rough);
+    println!("antialiased and not: {psnr:.1} dB");
+    assert!((15.0..45.0).contains(&psnr), "{psnr} dB");
+}
+
+#[test]
+fn what_stands_in_leaves_with_its_camera_settings() {
+    let mut headless = courtyard((Afterimage::default(), Foveated::auto(1e6)));
+    let mut cameras = headless.app.world_mut().query_filtered::<Entity, With<Foveated>>();
+    let camera = cameras.single(headless.app.world()).expect("a camera");
+    let out = Foveated { kind: FoveationKind::Off, ..Foveated::auto(1e6) };
+    let stands_in = |headless: &mut Headless, foveated: Foveated| {
+        // Without `Auto`, which would choose the kind itself, for one frame.
+        headless.app.world_mut().entity_mut(camera).remove::<Auto>().insert(foveated);
+        headless.frames(1);
+        let camera = headless.app.world().entity(camera);
+        [camera.contains::<TemporalAntiAliasing>(), camera.contains::<TemporalJitter>()]
+    };
+    assert_eq!(stands_in(&mut headless, out), [true; 2]);
+    assert_eq!(stands_in(&mut headless, Foveated::auto(1e6)), [false; 2]);
+    assert_eq!(stands_in(&mut headless, out), [true; 2]);
+    assert_eq!(stands_in(&mut headless, Foveated::screen()), [false; 2]);
+    // The application's own stays.
+    headless.app.world_mut().entity_mut(camera).insert(TemporalAntiAliasing::default());
+    assert_eq!(stands_in(&mut headless, out), [true; 2]);
+    assert_eq!(stands_in(&mut headless, Foveated::uniform(0.25)), [true; 2]);
 }
