@@ -1,5 +1,6 @@
 //! Hard cases of frames shaded by quads, H109 to H114: laws that hold on either executor.
 
+pub mod inputs;
 pub mod old_light;
 pub mod other_surfaces;
 pub mod sliding;
@@ -26,11 +27,39 @@ macro_rules! planned_laws {
 }
 pub(crate) use planned_laws;
 
+/// Laws of rows that full-size frames have, too.
+macro_rules! planned_input_laws {
+    ($side:ident, $run_law:ident) => {
+        crate::laws::laws! { $side, $run_law,
+            h36_h37_colors_beyond_all_screens_stay_finite_on_planned_frames: "H36", "H37", colors;
+            h42_depth_beyond_its_ends_is_clamped_on_planned_frames: "H42", depth_ends;
+            h57_the_edge_of_the_view_ends_history_on_planned_frames: "H57", edge_of_the_view;
+            h47_a_nan_depth_stays_near_its_pixel_on_planned_frames: "H47", nan_depth;
+            h51_a_still_picture_is_complete_and_stays_on_planned_frames: "H51", still_picture;
+            h52_a_whole_shift_moves_history_exactly_on_planned_frames: "H52", whole_shift;
+            h53_half_pixels_blur_no_more_than_stated_on_planned_frames: "H53", half_pixels;
+            h54_garbage_motion_rejects_its_pixel_on_planned_frames: "H54", garbage_motion;
+            h58_nothing_bleeds_over_a_depth_edge_on_planned_frames: "H58", depth_edge;
+            h59_a_zoom_leaves_no_hole_on_planned_frames: "H59", zoom;
+            h60_a_turn_is_a_full_reset_on_planned_frames: "H60", turn;
+            h63_a_lost_gaze_is_held_on_planned_frames: "H63", lost_gaze;
+            h66_the_old_fovea_stays_sharp_on_planned_frames: "H66", saccade;
+            h72_a_declared_exposure_loses_nothing_on_planned_frames: "H72", exposure;
+            h74_a_strobe_leaves_nothing_behind_on_planned_frames: "H74", strobe;
+            h75_black_and_white_by_turns_on_planned_frames: "H75", black_and_white;
+            h76_h79_other_sizes_and_back_equal_a_fresh_context_on_planned_frames: "H76", "H79", other_sizes;
+            h77_h78_resets_equal_a_fresh_context_on_planned_frames: "H77", "H78", resets;
+        }
+    };
+}
+pub(crate) use planned_input_laws;
+
 /// The whole tables, on the CPU: the device has its bits.
 #[allow(unused_macros, reason = "the CPU's tests use it")]
 macro_rules! planned_tables {
     ($side:ident, $run_law:ident) => {
         crate::laws::laws! { $side, $run_law,
+            h47_a_nan_depth_stays_near_its_pixel_on_antialiased_frames: "H47", nan_depth_antialiased;
             h109_old_light_behind_slow_edges: "H109", slow_edges;
             h109_old_light_behind_fast_edges: "H109", fast_edges;
             h109_old_light_where_edges_stood: "H109", standing_edges;

@@ -8,4 +8,11 @@ use crate::planned_hard::still::{moire, still_wall};
 use crate::planned_hard::turning::turning;
 use crate::planned_hard::*;
 
+mod inputs {
+    use super::run_law;
+    use crate::planned_hard::inputs::*;
+
+    crate::planned_hard::planned_input_laws!(Gpu, run_law);
+}
+
 planned_laws!(Gpu, run_law);

@@ -91,7 +91,8 @@ pub const ROWS: [Row; 109] = [
     row("H45", "camera 1 m toward a wall", "motion alone rejects no history", BOTH),
     row("H46", "1-px wire over far wall, jittered", "rejections bounded, no blinking", BOTH)
     .but("columns that jitter alternates show the candidate; with smr, others blink by less than 1e-3 of the wire's energy."),
-    row("H47", "depth NaN in 1 px", "rejected there, neighbours unchanged", BOTH),
+    row("H47", "depth NaN in 1 px", "rejected there, neighbours unchanged", BOTH)
+    .but("planned frames: a sample of unknown depth stands for no other pixel, so that colors up to 7 px away change for 5 frames."),
     row("H48", "near or far plane changes", "comparison unaffected, history valid", CPU)
     .but("planes are fixed per context: pass distances, or create a new context."),
     row("H49", "orthographic projection", "linear depth", CPU),
@@ -123,11 +124,14 @@ pub const ROWS: [Row; 109] = [
     row("H70", "simulator: energy", "mean preserved within 1e-3", BOTH),
     row("H71", "simulator: ring boundary", "continuous; gradient jump bounded", BOTH),
     // Exposure, range, lifecycle
-    row("H72", "exposure x256 in one frame", "declared: history scaled, no flash; undeclared: recovers within N frames", BOTH),
+    row("H72", "exposure x256 in one frame", "declared: history scaled, no flash; undeclared: recovers within N frames", BOTH)
+    .but("planned frames, undeclared: 16 frames for x256; for /256 up to 1.4 % of white stays for 64 frames and more."),
     row("H73", "firefly of 65504 in a dark scene", "clamped or expires in documented frames; energy accounted", BOTH),
     row("H74", "light on and off by frames", "no permanent bias", BOTH)
-    .but("smr, 10-bit storage: a weak strobe leaves up to 1.5 / 1024 / (1 - accumulate) of the color, 1.5 % by default."),
-    row("H75", "black and white frames by turns", "one of the two; mean over time unbiased", BOTH),
+    .but("smr, 10-bit storage: a weak strobe leaves up to 1.5 / 1024 / (1 - accumulate) of the color, 1.5 % by default. \
+        Planned frames, antialiased: up to 5 % of its light after 16 frames, 1.1 % after 64."),
+    row("H75", "black and white frames by turns", "one of the two; mean over time unbiased", BOTH)
+    .but("planned frames show both at a time, and the last color when the turns end: 0.8 % of the other after 16 frames."),
     row("H76", "resize, odd sizes, 0x0", "no panic; reset or resampled", BOTH),
     row("H77", "pause of 10 s; device lost", "a cut; no stale frame", BOTH),
     row("H78", "reset twice running, or at frame 0", "a fresh context, bit for bit", BOTH),

@@ -12,7 +12,9 @@ const HEAD: &str = "# Hard cases\n\n\
     `tests/stability.sh` generates both files. `tests/run.sh` fails if a case or a test is missing.\n\n\
     `tests/soak.sh` runs 100,000 frames with random resets, resizes, lost gazes, invalid pixels and exposure steps. In one run, executors \
     were equal in every bit, no output was NaN or infinite, and memory stayed at 224 MiB.\n\n\
-    case | input | must hold | measured\n---|---|---|---\n";
+    Column \"planned\": where a test of planned frames proves the case; the others are of full-size frames, or of arithmetic that both \
+    use.\n\n\
+    case | input | must hold | planned | measured\n---|---|---|---|---\n";
 const LIMITS: &str = "\n## Limits\n\n";
 const COLUMNS: [&str; 6] = ["row", "input", "must hold", "executor", "test", "measured"];
 
@@ -36,6 +38,11 @@ impl Held {
         format!("{} {} {}", self.row, self.side, self.test)
     }
 
+    /// Whether it is proved on planned frames.
+    fn is_planned(&self) -> bool {
+        ["planned", "mask", "quads"].iter().any(|word| self.test.contains(word)) || self.figure.contains("planned")
+    }
+
     /// Files that may contain the test.
     pub fn files(&self) -> Vec<PathBuf> {
         let path: Vec<&str> = self.test.split("::").collect();
@@ -55,15 +62,26 @@ impl Held {
     }
 }
 
-/// Prints the page: for each row, the sides that test it, if not CPU and GPU, and what its first test measured.
+/// Sides of tests in their order.
+fn sides<'a>(held: impl Iterator<Item = &'a Held>) -> String {
+    let mut sides: Vec<&str> = held.map(|h| h.side.as_str()).collect();
+    sides.dedup();
+    sides.join("+")
+}
+
+/// Prints the page: for each row, the sides that test it, if not CPU and GPU, those that do on planned frames, and what
+/// its first test measured.
 pub fn page(held: &[Held]) -> String {
     let lines = ROWS.iter().map(|row| {
         let held: Vec<&Held> = held.iter().filter(|h| h.row == row.id).collect();
-        let mut sides: Vec<&str> = held.iter().map(|h| h.side.as_str()).collect();
-        sides.dedup();
-        let first = held.first().map_or("", |h| h.figure.as_str());
-        let on = if sides == ["CPU", "GPU"] { String::new() } else { format!(" ({})", sides.join("+")) };
-        format!("{}{on} | {} | {} | {first}\n", row.id, row.input, row.must)
+        let planned = sides(held.iter().copied().filter(|h| h.is_planned()));
+        let of_whole_frames = held.iter().find(|h| !h.test.contains("planned"));
+        let first = of_whole_frames.or(held.first()).map_or("", |h| h.figure.as_str());
+        let on = match sides(held.iter().copied()).as_str() {
+            "CPU+GPU" => String::new(),
+            sides => format!(" ({sides})"),
+        };
+        format!("{}{on} | {} | {} | {planned} | {first}\n", row.id, row.input, row.must)
     });
     let limits = ROWS.iter().filter_map(|r| Some(format!("- {}: {}\n", r.id, r.limit?)));
     HEAD.to_owned() + &lines.collect::<String>() + LIMITS + &limits.collect::<String>()
