@@ -78,7 +78,8 @@ pub const ROWS: [Row; 109] = [
     row("H35", "8-bit linear step near black", "Delta L* 3.54 must not look like change", CPU)
     .but("with an offset of 3.6."),
     row("H36", "negative linear RGB", "never NaN", BOTH),
-    row("H37", "colors 1e4, 65504, 1e30", "finite Delta E", BOTH),
+    row("H37", "colors 1e4, 65504, 1e30", "finite Delta E", BOTH)
+    .but("planned frames: of such samples at every seventh pixel, up to 11 % of the pixels are off by 10 % after 32 frames."),
     row("H38", "cube root on the GPU", "<= 4 ulp, exact at 0 and 1; no `pow`", BOTH),
     row("H39", "identical colors", "Delta E exactly 0, factor exactly 1", BOTH),
     row("H40", "vectors of Sharma et al. (2004), adapted to CIE94", "within 1e-4 of published values and f64", CPU),
