@@ -36,7 +36,7 @@
 //! loss, as in `resize`, to the device's handler of uncaptured errors, and the default handler panics.
 //!
 //! The same passes exist for images in memory; their results are equal bit for bit on software Vulkan, native and in a
-//! browser. The command `afterimage process` runs them on files, without a GPU, too.
+//! browser. The command `afterimage run --backend cpu` runs them on files, without a GPU.
 //!
 //! # Determinism
 //!
