@@ -9,7 +9,10 @@ target="${CARGO_TARGET_DIR:-target}"
 export CARGO_INCREMENTAL=0 CARGO_PROFILE_DEV_DEBUG=none
 
 step "format"
-cargo fmt --check
+# Crates outside the workspace too: the steps that build them come last.
+for manifest in Cargo.toml crates/bevy/Cargo.toml crates/web/Cargo.toml; do
+    cargo fmt --check --all --manifest-path "$manifest"
+done
 
 step "spelling"
 if command -v typos >/dev/null; then typos; else echo "no typos (cargo install typos-cli): SKIPPED"; fi

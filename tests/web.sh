@@ -44,7 +44,6 @@ node tests/web/replay_all.mjs "$recordings"
 rm -rf "$recordings"
 
 step "the demo"
-cargo fmt --check --all --manifest-path crates/web/Cargo.toml
 # A folder seen from here, where the page must then be.
 crates/web/build.sh target/demo
 node crates/web/test.mjs target/demo
