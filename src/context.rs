@@ -2,7 +2,6 @@
 
 use crate::convention::{DepthConvention, MotionConvention};
 use crate::error::{FrameError, SettingsError, expected_size};
-#[cfg(feature = "gpu")]
 use crate::method::HistoryLayout;
 use crate::settings::Settings;
 
@@ -41,6 +40,12 @@ pub struct ContextDesc {
     /// give a trust or reactive mask there. The other methods have this frame's alpha, between the samples of planned
     /// frames a mean of those around.
     pub keep_alpha: bool,
+    /// Whether frames have the albedo of every pixel ([`FrameInputs::albedo`](crate::levels::FrameInputs::albedo)):
+    /// then samples show light, and texture is the pixel's own. Only on planned frames
+    /// ([`Filter::Quads`](crate::internal::Filter::Quads)) of smr that
+    /// [antialiases](crate::internal::Smr::antialias) and has no noise, and on a GPU without
+    /// [`keep_alpha`](Self::keep_alpha), whose place it takes: 8 bytes a pixel and view. Default false.
+    pub has_albedo: bool,
     /// Method, foveation and tunables. Default: [`Settings::steady`].
     pub settings: Settings,
 }
@@ -57,6 +62,7 @@ impl ContextDesc {
             motion: MotionConvention::default(),
             depth: DepthConvention::default(),
             keep_alpha: true,
+            has_albedo: false,
             settings: Settings::default(),
         }
     }
@@ -67,9 +73,26 @@ impl ContextDesc {
         self.keep_alpha && matches!(self.settings.history_layout(), HistoryLayout::Sparse { .. })
     }
 
+    /// Whether history has the alpha or the albedo of its samples.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn has_extra_history(&self) -> bool {
+        self.has_alpha_history() || self.has_albedo
+    }
+
+    /// Rejects settings that have no use for the albedo that frames have.
+    pub(crate) fn check_albedo(&self, settings: &Settings) -> Result<(), SettingsError> {
+        if !self.has_albedo || matches!(settings.history_layout(), HistoryLayout::Sparse { noisy: false, means: true })
+        {
+            return Ok(());
+        }
+        let expected = "false; or Filter::Quads, Method::Smr with antialias, and no noise".into();
+        Err(SettingsError { setting: "has_albedo", found: "true".into(), expected })
+    }
+
     /// Checks settings, size, number of views and planes.
     pub(crate) fn validate(&self) -> Result<(), SettingsError> {
         self.settings.validate()?;
+        self.check_albedo(&self.settings)?;
         self.depth.validate()?;
         check_size(self.size_px).map_err(|_| SettingsError {
             setting: "size_px",

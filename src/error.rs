@@ -247,6 +247,8 @@ pub enum FrameValue {
     Lod,
     /// [`FrameInputs::noise`](crate::levels::FrameInputs::noise).
     Noise,
+    /// [`FrameInputs::albedo`](crate::levels::FrameInputs::albedo).
+    Albedo,
     /// [`FrameInputs::reactive`](crate::levels::FrameInputs::reactive).
     Reactive,
     /// [`FrameInputs::exposure`](crate::levels::FrameInputs::exposure).
@@ -276,6 +278,7 @@ impl Display for FrameValue {
             Self::CameraMotion => "previous_from_current",
             Self::Lod => "lod",
             Self::Noise => "noise",
+            Self::Albedo => "albedo",
             Self::Reactive => "reactive",
             Self::Exposure => "exposure",
             Self::Plan => "plan",

@@ -129,6 +129,13 @@ pub struct FrameInputs<'a, Colors, Scalars, Vectors> {
     /// color, at its level of detail. On a GPU `Rg16Float`, `Rg32Float` or wider. Required if [`Settings::noisy`] is
     /// set, otherwise `None`. In planned frames it is read only at the pixels of samples.
     pub noise: Option<Vectors>,
+    /// Albedo of every pixel of a planned frame, in which texture is then the pixel's own, and light alone is
+    /// interpolated and remembered: the reflectance that multiplies light, 0 to 1, diffuse plus specular, in the same
+    /// primaries as the color. It is jittered as the color is. 0 for the sky and for what shines itself; larger values
+    /// count as 1, NaN and infinity as unknown. On a GPU any float or normalised format. Required if
+    /// [`ContextDesc::has_albedo`] is set, otherwise `None`.
+    #[doc(hidden)]
+    pub albedo: Option<Colors>,
     /// Mask of a planned frame whose pixels the renderer chose itself, in place of
     /// `plan`: a pixel is shaded where it is above 0.5; NaN counts as 0. For checkerboards, half resolution, or a
     /// tracer that chooses its own pixels; any pattern does, if it visits every pixel in some frame. On a GPU any float
@@ -162,6 +169,7 @@ impl<'a, Colors, Scalars, Vectors> FrameInputs<'a, Colors, Scalars, Vectors> {
             reactive: None,
             lod: None,
             noise: None,
+            albedo: None,
             mask: None,
             half: None,
             views,
@@ -174,7 +182,8 @@ impl<'a, Colors, Scalars, Vectors> FrameInputs<'a, Colors, Scalars, Vectors> {
     /// Checks all fields except the images.
     pub(crate) fn check(&self, desc: &ContextDesc) -> Result<(), FrameError> {
         self.check_facts(desc)?;
-        self.check_noise(&desc.settings)
+        self.check_noise(&desc.settings)?;
+        self.check_albedo(desc)
     }
 
     /// Checks the parts of a frame that are known before it is shaded.
@@ -237,6 +246,16 @@ impl<'a, Colors, Scalars, Vectors> FrameInputs<'a, Colors, Scalars, Vectors> {
             return Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected });
         }
         Ok(())
+    }
+
+    /// Rejects a missing albedo if the context needs one, and an albedo if it does not.
+    fn check_albedo(&self, desc: &ContextDesc) -> Result<(), FrameError> {
+        let (found, expected) = match (desc.has_albedo, self.albedo.is_some()) {
+            (true, false) => ("None", "the albedo of every pixel, because ContextDesc::has_albedo is set"),
+            (false, true) => ("given", "None; or set ContextDesc::has_albedo"),
+            _ => return Ok(()),
+        };
+        Err(FrameError::Value { value: FrameValue::Albedo, view: 0, found: found.into(), expected })
     }
 
     /// Rejects a missing noise input if the settings require one, and a noise input if they do not.

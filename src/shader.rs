@@ -1,7 +1,8 @@
 //! Composition of WGSL shaders from modules.
 //!
 //! Every file under `shaders/` is a module and valid WGSL syntax. Comment lines `//#use name` at its top name the
-//! modules that it uses. `lib/` contains functions without bindings, the twins of [`kernel`](crate::kernel); `pass/`
+//! modules that it uses. A line `//#instead name other` below them replaces one of these by another of the same
+//! functions. `lib/` contains functions without bindings, the twins of [`kernel`](crate::kernel); `pass/`
 //! and `foveation/` contain bindings, overrides and one entry point a file.
 
 /// One WGSL file.
@@ -40,16 +41,16 @@ pub static MODULES: &[Module] = modules! {
     "foveation":
         "block_show", "foveated_views", "gauss_axis", "mip_level", "mip_show";
     "lib":
-        "acuity", "antialias", "approx", "color", "debug_view", "depth", "doctor", "foveate", "lattice", "lens",
-        "noise", "pack", "quads", "reproject", "resample", "reservoir", "resize", "rng", "sanitize", "smr",
+        "acuity", "antialias", "approx", "color", "debug_view", "demodulation", "depth", "doctor", "foveate", "lattice",
+        "lens", "noise", "pack", "quads", "reproject", "resample", "reservoir", "resize", "rng", "sanitize", "smr",
         "sparse_smr", "stored_sample", "surface", "taa", "taau", "wrs";
     "pass":
         "candidate_lod", "candidate_pass", "doctor_pass", "doctor_roots_pass", "each_pixel", "foveation_lod", "inputs",
-        "mip_chain_pass", "none_pass", "origin", "output", "output_and_view", "past_frame", "previous",
-        "quad_around_pass", "quad_fill_pass", "quad_given_pass", "quad_key_pass", "quad_light_pass", "quad_list",
-        "quad_mask_pass", "quad_observe_pass", "quad_octants_pass", "quad_pass", "quad_plan", "quad_prime_pass",
-        "quad_runs", "quad_samples", "quad_state", "quad_threshold_pass", "resize_reservoirs_pass",
-        "resize_sparse_pass", "resize_surfaces_pass", "resize_uniforms", "settled_history", "smr_pass",
+        "mip_chain_pass", "no_albedo", "none_pass", "origin", "output", "output_and_view", "past_frame", "previous",
+        "quad_albedo_pass", "quad_around_pass", "quad_fill_pass", "quad_given_pass", "quad_key_pass", "quad_light_pass",
+        "quad_list", "quad_mask_pass", "quad_observe_pass", "quad_octants_pass", "quad_pass", "quad_plan",
+        "quad_prime_pass", "quad_runs", "quad_samples", "quad_state", "quad_threshold_pass", "resize_reservoirs_pass",
+        "resize_sparse_pass", "resize_surfaces_pass", "resize_uniforms", "settled_history", "smr_pass", "sparse_albedo",
         "sparse_history", "sparse_noise", "sparse_pixel", "surface_history", "taa_pass", "taau_pass", "view_uniforms",
         "wrs_pass", "wrs_pixel", "wrs_quad_pass";
 };
@@ -111,7 +112,8 @@ impl Composer {
     /// As for [`compose`](Self::compose).
     pub fn compose_replacing(&self, name: &str, instead: (&str, &str)) -> Composed {
         let mut composed = Composed { source: String::new(), origins: vec![] };
-        self.add(name, Some(instead), &mut composed, &mut vec![], &mut vec![]);
+        let all = [self.replaced(name), vec![instead]].concat();
+        self.add(name, &all, &mut composed, &mut vec![], &mut vec![]);
         composed
     }
 
@@ -123,33 +125,49 @@ impl Composer {
         let mut composed = Composed { source: String::new(), origins: vec![] };
         let mut done = vec![];
         for name in names {
-            self.add(name, None, &mut composed, &mut done, &mut vec![]);
+            self.add(name, &self.replaced(name), &mut composed, &mut done, &mut vec![]);
         }
         composed.push("(the caller's text)", extra);
         composed
     }
 
+    fn module(&self, name: &str) -> &'static Module {
+        let mut modules = self.tables.iter().flat_map(|table| table.iter());
+        modules.find(|m| m.name == name).unwrap_or_else(|| panic!("no shader module '{name}'"))
+    }
+
+    /// Modules that the module `name` replaces, and by which.
+    fn replaced(&self, name: &str) -> Vec<(&'static str, &'static str)> {
+        let pair =
+            |line: &'static str| line.split_once(' ').unwrap_or_else(|| panic!("by what does '{name}' replace?"));
+        lines_of(self.module(name), "//#instead ").map(pair).collect()
+    }
+
     fn add(
         &self,
         name: &str,
-        instead: Option<(&str, &str)>,
+        instead: &[(&str, &str)],
         composed: &mut Composed,
         done: &mut Vec<&'static str>,
         open: &mut Vec<&'static str>,
     ) {
-        let name = instead.filter(|(module, _)| *module == name).map_or(name, |(_, other)| other);
-        let mut modules = self.tables.iter().flat_map(|table| table.iter());
-        let module = modules.find(|m| m.name == name).unwrap_or_else(|| panic!("no shader module '{name}'"));
+        let module = self.module(instead.iter().find(|(module, _)| *module == name).map_or(name, |(_, other)| other));
         if done.contains(&module.name) {
             return;
         }
         assert!(!open.contains(&module.name), "shader modules use each other in a cycle: {open:?}");
         open.push(module.name);
-        for used in module.text.lines().map_while(|l| l.strip_prefix("//#use ")) {
-            self.add(used.trim(), instead, composed, done, open);
+        for used in lines_of(module, "//#use ") {
+            self.add(used, instead, composed, done, open);
         }
         open.pop();
         composed.push(module.path, module.text);
         done.push(module.name);
     }
+}
+
+/// What stands behind `key` in the lines at the top of a module.
+fn lines_of(module: &'static Module, key: &'static str) -> impl Iterator<Item = &'static str> {
+    let top = module.text.lines().take_while(|line| line.starts_with("//#"));
+    top.filter_map(move |line| line.strip_prefix(key)).map(str::trim)
 }

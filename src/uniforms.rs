@@ -19,7 +19,7 @@ use glam::Vec3;
 pub const MAX_VIEWS: usize = 4;
 
 /// Numbers of the bindings of a frame's inputs and outputs are below this one.
-pub const ORIGINS: usize = 12;
+pub const ORIGINS: usize = 16;
 
 /// Twin of `ViewUniforms` in `shaders/pass/view_uniforms.wgsl`.
 #[repr(C)]

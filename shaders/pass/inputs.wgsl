@@ -86,6 +86,7 @@ const REACTIVE_IN: u32 = 8u;
 const HALF_IN: u32 = 9u;
 const COLOR_OUT: u32 = 10u;
 const DEBUG_OUT: u32 = 11u;
+const ALBEDO_IN: u32 = 13u;
 
 @group(0) @binding(0) var<uniform> frame: FrameUniforms;
 @group(0) @binding(1) var color_in: texture_2d_array<f32>;

@@ -26,7 +26,7 @@ fn observe(px: vec2u, view: u32) -> vec2u {
     // At a silhouette the difference does not say whether anything changed.
     let comparable = color(sample_at(px, view).xyz).usable && !surface.is_silhouette;
     let needed = may_have_history(source.previous) && comparable;
-    let found = sparse_history(source, view, needed);
+    let found = sparse_history(source, view, needed, past_albedos(px, view));
     let history = found.found;
     if !needed || history.lod < 0.0 {
         return nothing;

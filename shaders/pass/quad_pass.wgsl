@@ -53,6 +53,7 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
     var own = vec4f(0.0);
     var own_fits = 1.0;
     var noises = NoiseSum(0.0, 0.0, 0.0);
+    var albedos = sample_albedos(px, view);
     // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
     let taps = select(0u, around.count, coarsest > 0.0);
     for (var tap = 0u; tap < taps; tap++) {
@@ -82,6 +83,9 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
             let is_nearer = same && px2 < nearest_px2;
             nearest_px2 = select(nearest_px2, px2, is_nearer);
             candidate.beside = select(candidate.beside, sampled.color, is_nearer);
+            if HAS_ALBEDO {
+                albedos = with_sample(albedos, at, view, sampled.color, weight);
+            }
             if NOISY != 0u {
                 noises = add_noise(noises, noise_at(at, view), weight);
             }
@@ -105,6 +109,15 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
     candidate.lod = select(lod, 0.0, candidate.is_own);
     candidate.gains = gain_sum * known;
     candidate.fit = min(fit_sum * known, own_fits);
+    if HAS_ALBEDO {
+        let has_surface = nearest_px2 != NO_PX2;
+        albedos = with_change(albedos, candidate.is_own, has_surface);
+        candidate.color *= albedos.factor;
+        candidate.lowest *= albedos.factor;
+        candidate.highest *= albedos.factor;
+        candidate.beside *= albedos.factor;
+        candidate.albedos = albedos;
+    }
     if NOISY != 0u {
         candidate.noise = mean_noise(noises);
         if candidate.is_own {
@@ -125,6 +138,9 @@ fn full_rate_candidate(px: vec2u, view: u32, mask_word: u32) -> Candidate {
     candidate.alpha = select(1.0, usable_alpha(given.w), usable);
     candidate.usable = usable;
     candidate.is_own = usable;
+    if HAS_ALBEDO && usable {
+        candidate.albedos = with_change(sample_albedos(px, view), true, true);
+    }
     return candidate;
 }
 

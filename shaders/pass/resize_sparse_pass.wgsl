@@ -6,15 +6,16 @@
 
 @group(0) @binding(15) var past_stored: texture_2d_array<u32>;
 @group(0) @binding(16) var past_noise: texture_2d_array<u32>;
-@group(0) @binding(17) var past_alpha: texture_2d_array<u32>;
+@group(0) @binding(17) var past_extra: texture_2d_array<u32>;
 @group(0) @binding(18) var next_stored: texture_storage_2d_array<rg32uint, write>;
 @group(0) @binding(19) var next_noise: texture_storage_2d_array<r32uint, write>;
-@group(0) @binding(20) var next_alpha: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(20) var next_extra: texture_storage_2d_array<r32uint, write>;
 
 override NOISY: u32 = 0u;
 // Whether the stored samples are means of samples.
 override MEANS: u32 = 0u;
-override HAS_ALPHA: u32 = 0u;
+// Whether they have alphas or albedos.
+override HAS_EXTRA: u32 = 0u;
 
 @compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
@@ -38,7 +39,7 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: 
     if NOISY != 0u {
         textureStore(next_noise, id.xy, group.z, textureLoad(past_noise, at, group.z, 0));
     }
-    if HAS_ALPHA != 0u {
-        textureStore(next_alpha, id.xy, group.z, textureLoad(past_alpha, at, group.z, 0));
+    if HAS_EXTRA != 0u {
+        textureStore(next_extra, id.xy, group.z, textureLoad(past_extra, at, group.z, 0));
     }
 }

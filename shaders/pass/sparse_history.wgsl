@@ -1,4 +1,5 @@
 //#use antialias
+//#use no_albedo
 //#use previous
 //#use resample
 //#use sparse_smr
@@ -12,11 +13,11 @@ override ANTIALIAS: u32 = 0u;
 override HAS_ALPHA: u32 = 0u;
 
 @group(0) @binding(15) var past_stored: texture_2d_array<u32>;
-// Alphas of the stored samples, as floats.
-@group(0) @binding(17) var past_alpha: texture_2d_array<u32>;
+// Alphas of the stored samples, as floats; or their packed albedos.
+@group(0) @binding(17) var past_extra: texture_2d_array<u32>;
 
-fn stored_alpha(texel: vec2i, view: u32) -> f32 {
-    return bitcast<f32>(textureLoad(past_alpha, clamp(texel, vec2i(0), vec2i(frame.size) - 1), view, 0).x);
+fn extra_word(texel: vec2i, view: u32) -> u32 {
+    return textureLoad(past_extra, clamp(texel, vec2i(0), vec2i(frame.size) - 1), view, 0).x;
 }
 
 fn stored_words(texel: vec2i, view: u32) -> vec2u {
@@ -51,8 +52,10 @@ struct PixelSurface {
     mixes: bool,
     // Whether history is the mean of several surfaces, of which a sample shows one.
     is_silhouette: bool,
-    // Whether the pixel is at a moving edge of a surface, outside the fovea.
+    // Whether the pixel is at an edge of a surface.
     is_edge: bool,
+    // Whether that edge moves, and is outside the fovea.
+    is_moving_edge: bool,
 }
 
 // The surface whose history a pixel continues: with ANTIALIAS the nearest surface around it if `stands_before` is true,
@@ -62,7 +65,7 @@ fn surface_of(px: vec2u, view: u32, level: u32) -> PixelSurface {
     let own_motion = motion_at(px, view);
     let own_moved_px = moved_px_at(px, view, own, own_motion);
     if ANTIALIAS == 0u || DEPTH_TEST == 0u {
-        return PixelSurface(own, own_motion, own, own_moved_px, own, own, false, false, false);
+        return PixelSurface(own, own_motion, own, own_moved_px, own, own, false, false, false, false);
     }
     var nearest_disparity = own;
     var farthest_disparity = own;
@@ -90,11 +93,11 @@ fn surface_of(px: vec2u, view: u32, level: u32) -> PixelSurface {
         edge = edge || is_edge(own, disparities.x, disparities.y);
     }
     let motion = motion_at(nearest_at, view);
-    let at_edge = edge && level > 0u && has_moved(own_motion, motion);
-    var surface = PixelSurface(own, own_motion, own, own_moved_px, own, own, false, false, at_edge);
+    let is_moving = edge && level > 0u && has_moved(own_motion, motion);
+    var surface = PixelSurface(own, own_motion, own, own_moved_px, own, own, false, false, edge, is_moving);
     if stands_before(own, nearest_disparity, own_motion, motion, level == 0u) {
         let moved_px = moved_px_at(nearest_at, view, nearest_disparity, motion);
-        surface = PixelSurface(nearest_disparity, motion, nearest_disparity, moved_px, own, own, false, false, at_edge);
+        surface = PixelSurface(nearest_disparity, motion, nearest_disparity, moved_px, own, own, false, false, edge, is_moving);
     }
     if own >= 0.0 && move_together(own_motion, motion, motion_at(farthest_at, view)) {
         surface.stored_disparity = select(own, farthest_disparity, thin);
@@ -149,16 +152,18 @@ struct SparseHistory {
     mean: Mean,
     // Alpha at the position, and of the sample to keep.
     alpha: vec2f,
+    albedos: PastAlbedos,
 }
 
 // History at a previous position, in this frame's exposure. At a silhouette the nearest stored sample may belong to
 // another surface. Samples beside it then replace it if they are near enough. Where `needed` is false the loop has zero
-// iterations: software Vulkan runs the body of an `if` for all pixels.
-fn sparse_history(source: SparseSource, view: u32, needed: bool) -> SparseHistory {
+// iterations: software Vulkan runs the body of an `if` for all pixels. `no_texels`: sums over the albedos of none.
+fn sparse_history(source: SparseSource, view: u32, needed: bool, no_texels: PastAlbedos) -> SparseHistory {
     let previous = source.previous;
     var around = nothing_around();
     // The same samples with their alpha in place of their color.
     var alphas = nothing_around();
+    var albedos = no_texels;
     // The place of a mean may lie anywhere around its texel's centre, so that the eight texels around the nearest one
     // also count.
     var columns = 2u;
@@ -182,16 +187,27 @@ fn sparse_history(source: SparseSource, view: u32, needed: bool) -> SparseHistor
         if ANTIALIAS != 0u {
             stored.lod = mean_lod(lod);
         }
+        // Before `add_stored`, which has the same: compilers find it once.
+        let place = (vec2f(texel) - previous.at) + stored.place_px;
+        let weight = stored_weight(place.x * place.x + place.y * place.y, inverse_reach);
         around = add_stored(around, stored, vec2f(texel) - previous.at, same, inverse_reach);
+        let is_nearest = around.cost < cost;
+        if HAS_ALBEDO {
+            let word = extra_word(texel, view);
+            albedos = with_texel(albedos, word, stored.color, weight, place, same, is_nearest);
+        }
         if HAS_ALPHA != 0u {
-            stored.color = vec3f(stored_alpha(texel, view));
+            stored.color = vec3f(bitcast<f32>(extra_word(texel, view)));
             alphas = add_stored(alphas, stored, vec2f(texel) - previous.at, same, inverse_reach);
         }
-        nearest_texel = select(nearest_texel, texel, around.cost < cost);
-        kept_lod = select(kept_lod, lod, around.cost < cost);
+        nearest_texel = select(nearest_texel, texel, is_nearest);
+        kept_lod = select(kept_lod, lod, is_nearest);
     }
     if previous.verdict == VERDICT_DISOCCLUDED && !can_replace(around) {
         around = nothing_around();
+    }
+    if HAS_ALBEDO {
+        albedos = with_shown(albedos, around);
     }
     var found = interpolate(around);
     found.color = expose(found.color, frame.exposure);
@@ -204,7 +220,7 @@ fn sparse_history(source: SparseSource, view: u32, needed: bool) -> SparseHistor
         let shown = interpolate(alphas);
         alpha = vec2f(clamp(shown.color.x, shown.lowest.x, shown.highest.x), shown.nearest.color.x);
     }
-    return SparseHistory(found, nearest_texel, mean_of(kept_lod), alpha);
+    return SparseHistory(found, nearest_texel, mean_of(kept_lod), alpha, albedos);
 }
 
 // Whether history has moved since its samples were shaded, by more than the resolution of their stored places.

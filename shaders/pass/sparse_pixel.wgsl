@@ -8,7 +8,7 @@
 
 @group(0) @binding(18) var next_stored: texture_storage_2d_array<rg32uint, write>;
 @group(0) @binding(19) var next_noise: texture_storage_2d_array<r32uint, write>;
-@group(0) @binding(20) var next_alpha: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(20) var next_extra: texture_storage_2d_array<r32uint, write>;
 
 // Candidate of a pixel, and its gain and fit.
 struct Candidate {
@@ -26,6 +26,7 @@ struct Candidate {
     // Color of the sample of the pixel's surface beside it, and whether there is one.
     beside: vec3f,
     is_beside: bool,
+    albedos: SampleAlbedos,
     // Of a noisy pixel with a sample: mean of all samples around it, its own included, and the mean variance of one.
     around: vec4f,
 }
@@ -55,6 +56,12 @@ fn is_centred_at(view: u32, level: u32, candidate: Candidate) -> bool {
     return ANTIALIAS != 0u && candidate.is_own && level == 0u && surrounds_centre(frame.views[view].jitter_px);
 }
 
+// Whether the result at a pixel is that of the sample beside it. `at_edge`: whether it is at a moving edge;
+// `nearest_lod`: level of detail of history's nearest sample.
+fn takes_beside(candidate: Candidate, at_edge: bool, nearest_lod: f32) -> bool {
+    return !candidate.is_own && at_edge && candidate.is_beside && nearest_lod <= 0.0;
+}
+
 // Result at a pixel that has history and a usable candidate, of jittered frames. `near`: sums over the nine samples
 // around a pixel of full rate; `at_edge`: whether it is at a moving edge outside the fovea.
 fn antialiased(
@@ -70,7 +77,7 @@ fn antialiased(
     let place_px = -frame.views[view].jitter_px;
     var inputs = given;
     if !candidate.is_own {
-        if at_edge && candidate.is_beside && given.nearest.lod <= 0.0 {
+        if takes_beside(candidate, at_edge, given.nearest.lod) {
             inputs.candidate = candidate.beside;
             return average_beside(inputs, past, place_px);
         }
@@ -108,7 +115,10 @@ fn hidden_pixel(px: vec2u, view: u32) {
             textureStore(next_noise, px, view, vec4u(pack_noise(Noise(1.0, 0.0)), 0u, 0u, 0u));
         }
         if HAS_ALPHA != 0u {
-            textureStore(next_alpha, px, view, vec4u(bitcast<u32>(1.0f), 0u, 0u, 0u));
+            textureStore(next_extra, px, view, vec4u(bitcast<u32>(1.0f), 0u, 0u, 0u));
+        }
+        if HAS_ALBEDO {
+            textureStore(next_extra, px, view, vec4u(0u));
         }
     }
 }
@@ -122,7 +132,8 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candi
     let source = sparse_source(px, view, surface);
     let previous = source.previous;
     let is_final = candidate.usable && level == 0u && NOISY == 0u && ANTIALIAS == 0u;
-    let found = sparse_history(source, view, may_have_history(previous) && !is_final);
+    let needed = may_have_history(previous) && !is_final;
+    let found = sparse_history(source, view, needed, past_albedos(px, view));
     let history = found.found;
     let verdict = select(previous.verdict, VERDICT_VALID, history.lod >= 0.0);
     let valid = verdict == VERDICT_VALID;
@@ -151,6 +162,7 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candi
     var noise = candidate.noise;
     // To show, and to store.
     var alpha = vec2f(candidate.alpha);
+    var result = Reconstructed(shown, next, 0.0, false, 0.0);
     if history.lod >= 0.0 {
         if candidate.usable {
             var inputs: Reconstruction;
@@ -170,7 +182,6 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candi
             inputs.fit = candidate.fit;
             inputs.trust = previous.trust;
             inputs.accumulate = frame.smr_accumulate;
-            var result: Reconstructed;
             if NOISY != 0u {
                 let accumulated = accumulate(inputs, stored_noise(found.texel, view), candidate.noise);
                 result = accumulated.result;
@@ -178,7 +189,7 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candi
             } else if ANTIALIAS != 0u {
                 let contrast = root_difference(history.lowest, history.highest);
                 let error = expected_mean_error(found.mean, contrast, moved);
-                let averaged = antialiased(view, level, inputs, found.mean, error, candidate, surface.is_edge, near);
+                let averaged = antialiased(view, level, inputs, found.mean, error, candidate, surface.is_moving_edge, near);
                 result = averaged.result;
                 mean = averaged.mean;
             } else {
@@ -194,12 +205,21 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candi
             alpha = found.alpha;
             share = 1.0;
             next = history.nearest;
+            result = Reconstructed(shown, next, 1.0, true, 1.0);
             mean = found.mean;
             if NOISY != 0u {
                 noise = stored_noise(found.texel, view);
             }
         }
         next.disparity = surface.stored_disparity;
+    }
+    var texture: Retextured;
+    if HAS_ALBEDO {
+        let of_candidate = candidate.albedos.albedo;
+        texture = retexture(px, view, level, surface.is_edge, of_candidate, found.albedos, history, result, mean.samples);
+        shown *= texture.shown;
+        next.color *= texture.stored;
+        next.place_px += (-frame.views[view].jitter_px - next.place_px) * texture.place_share;
     }
     // Means of colors may exceed the largest half.
     shown = clamp(shown, vec3f(-MAX_HALF), vec3f(MAX_HALF));
@@ -224,7 +244,10 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candi
             textureStore(next_noise, px, view, vec4u(pack_noise(noise), 0u, 0u, 0u));
         }
         if HAS_ALPHA != 0u {
-            textureStore(next_alpha, px, view, vec4u(bitcast<u32>(alpha.y), 0u, 0u, 0u));
+            textureStore(next_extra, px, view, vec4u(bitcast<u32>(alpha.y), 0u, 0u, 0u));
+        }
+        if HAS_ALBEDO {
+            textureStore(next_extra, px, view, vec4u(texture.word, 0u, 0u, 0u));
         }
     }
 }

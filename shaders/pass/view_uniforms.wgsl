@@ -13,7 +13,7 @@ struct ViewUniforms {
     disparity_flags: u32,
     motion_offset: vec2f,
     jitter_px: vec2f,
-    origins: array<vec4u, 3>,
+    origins: array<vec4u, 4>,
     lowest_px: vec4f,
     highest_px: vec4f,
 }

@@ -31,11 +31,14 @@ struct Plane {
     noise: Vec<u32>,
     /// Of stored samples, once a frame has alpha.
     alpha: Vec<f32>,
+    /// Packed albedos of stored samples, of contexts with albedo.
+    albedo: Vec<u32>,
     mip_chains: Vec<MipChain>,
 }
 
 impl Plane {
-    fn new(size_px: [u32; 2], view_count: u32, layout: HistoryLayout) -> Self {
+    fn new(desc: &ContextDesc) -> Self {
+        let (size_px, view_count, layout) = (desc.size_px, desc.view_count, desc.settings.history_layout());
         let len = size_px[0] as usize * size_px[1] as usize * view_count as usize;
         let when = |used: bool| if used { len } else { 0 };
         let keyed = matches!(layout, HistoryLayout::Reservoirs { keys: true, .. });
@@ -50,6 +53,7 @@ impl Plane {
             surfaces: vec![[0; 2]; when(is_stored)],
             noise: vec![0; when(noisy)],
             alpha: vec![],
+            albedo: vec![0; when(desc.has_albedo)],
             mip_chains: mip_chains(size_px, view_count, layout),
         }
     }
@@ -61,6 +65,7 @@ impl Plane {
             + size_of_val(&self.surfaces[..])
             + size_of_val(&self.noise[..])
             + size_of_val(&self.alpha[..])
+            + size_of_val(&self.albedo[..])
             + self.mip_chains.iter().map(MipChain::memory_bytes).sum::<usize>()
     }
 }
@@ -81,8 +86,8 @@ impl History {
         Self {
             layout,
             view_len: size_px[0] as usize * size_px[1] as usize,
-            previous: Plane::new(size_px, view_count, layout),
-            current: Plane::new(size_px, view_count, layout),
+            previous: Plane::new(desc),
+            current: Plane::new(desc),
             candidates: match layout {
                 HistoryLayout::Surfaces { noisy: true, .. } => mip_chains(size_px, view_count, layout),
                 _ => vec![],
@@ -108,6 +113,7 @@ impl History {
         next.previous.noise = past.noise.chunks(len).flat_map(|v| resize.nearest(v)).collect();
         next.previous.alpha = past.alpha.chunks(len).flat_map(|v| resize.nearest(v)).collect();
         next.current.alpha = next.previous.alpha.clone();
+        next.previous.albedo = past.albedo.chunks(len).flat_map(|v| resize.nearest(v)).collect();
         let is_sparse = matches!(self.layout, HistoryLayout::Sparse { .. });
         let means = matches!(self.layout, HistoryLayout::Sparse { means: true, .. });
         let surfaces = |v| if is_sparse { resize.sparse(v, means) } else { resize.surfaces(v) };
@@ -198,10 +204,12 @@ impl History {
         let range = view * self.view_len..(view + 1) * self.view_len;
         let noise = if self.previous.noise.is_empty() { 0..0 } else { range.clone() };
         let alpha = if self.previous.alpha.is_empty() { 0..0 } else { range.clone() };
+        let albedo = if self.previous.albedo.is_empty() { 0..0 } else { range.clone() };
         let past = PastSurfaces {
             words: &self.previous.surfaces[range.clone()],
             noise: &self.previous.noise[noise.clone()],
             alpha: &self.previous.alpha[alpha.clone()],
+            albedo: &self.previous.albedo[albedo.clone()],
             mip_chain: self.previous.mip_chains.get(view),
             candidates: self.candidates.get(view),
         };
@@ -209,6 +217,7 @@ impl History {
             words: &mut self.current.surfaces[range],
             noise: &mut self.current.noise[noise],
             alpha: &mut self.current.alpha[alpha],
+            albedo: &mut self.current.albedo[albedo],
         };
         (past, next)
     }
@@ -244,6 +253,12 @@ impl History {
     /// smr with [`Settings::noisy`](crate::internal::Settings::noisy).
     pub fn noise(&self) -> &[u32] {
         &self.previous.noise
+    }
+
+    /// Packed albedos of the last processed frame's stored samples, view after view
+    /// ([`demodulation`](crate::kernel::demodulation)); empty unless [`ContextDesc::has_albedo`] is set.
+    pub fn albedo(&self) -> &[u32] {
+        &self.previous.albedo
     }
 
     pub(super) fn restore(&mut self, words: &[[u32; 3]]) {
@@ -284,13 +299,16 @@ pub(super) struct PastSurfaces<'a> {
     pub noise: &'a [u32],
     /// Empty unless frames have alpha.
     pub alpha: &'a [f32],
+    /// Empty unless frames have albedo.
+    pub albedo: &'a [u32],
     pub mip_chain: Option<&'a MipChain>,
     pub candidates: Option<&'a MipChain>,
 }
 
-/// This frame's surfaces of one view, with their noise and alpha, which are empty where there is none.
+/// This frame's surfaces of one view, with their noise, alpha and albedo, which are empty where there is none.
 pub(super) struct NextSurfaces<'a> {
     pub words: &'a mut [[u32; 2]],
     pub noise: &'a mut [u32],
     pub alpha: &'a mut [f32],
+    pub albedo: &'a mut [u32],
 }

@@ -70,9 +70,9 @@ impl<'a> Frame<'a> {
     where
         'a: 'b,
     {
-        let Self { depth, motion, trust, reactive, lod, noise, mask, half, views, index, .. } = *self;
+        let Self { depth, motion, trust, reactive, lod, noise, albedo, mask, half, views, index, .. } = *self;
         let (reset, exposure) = (self.reset, self.exposure);
-        Frame { color, depth, motion, trust, reactive, lod, noise, mask, half, views, index, reset, exposure }
+        Frame { color, depth, motion, trust, reactive, lod, noise, albedo, mask, half, views, index, reset, exposure }
     }
 }
 
@@ -208,6 +208,7 @@ impl CpuAfterimage {
     /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), SettingsError> {
         settings.validate()?;
+        self.desc.check_albedo(&settings)?;
         self.planned = None;
         let keeps_history = settings.keeps_history_of(&self.desc.settings);
         self.desc.settings = settings;
@@ -343,6 +344,7 @@ fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError>
     check_sizes_of(desc, "half", frame.half.map(|h| h.iter().map(|i| i.size())), half)?;
     check_geometry(desc, frame)?;
     check_sizes(desc, "lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
+    check_sizes(desc, "albedo", frame.albedo.map(|a| a.iter().map(|i| i.size())))?;
     check_sizes(desc, "mask", frame.mask.map(|m| m.iter().map(|i| i.size())))?;
     check_sizes(desc, "noise", frame.noise.map(|n| n.iter().map(|i| i.size())))
 }

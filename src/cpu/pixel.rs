@@ -12,6 +12,8 @@ pub(super) struct Pixel {
     pub noise: u32,
     /// Alpha to show, and alpha to store with the surface; of frames with alpha.
     pub alpha: [f32; 2],
+    /// Packed albedo of the surface; of frames with albedo.
+    pub albedo: u32,
     pub trace: PixelTrace,
 }
 

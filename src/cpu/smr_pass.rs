@@ -94,6 +94,7 @@ impl SurfaceMethod for Smr {
             surface: pack_surface(Surface { color: result.color, lod: stored_lod, disparity }),
             noise: output_noise.map_or(0, pack_noise),
             alpha: [1.0; 2],
+            albedo: 0,
             trace,
         }
     }

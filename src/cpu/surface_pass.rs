@@ -17,6 +17,8 @@ use crate::stats::FrameStats;
 pub(super) struct Targets<'a> {
     pub surfaces: &'a mut [[u32; 2]],
     pub noise: &'a mut [u32],
+    /// Empty in frames without albedo.
+    pub albedo: &'a mut [u32],
     pub output: &'a mut Image<[f32; 3]>,
     pub alpha: Option<AlphaTargets<'a>>,
     pub traces: Option<&'a mut Image<PixelTrace>>,
@@ -31,6 +33,7 @@ pub(super) struct AlphaTargets<'a> {
 struct Row<'a> {
     surfaces: &'a mut [[u32; 2]],
     noise: Option<&'a mut [u32]>,
+    albedo: Option<&'a mut [u32]>,
     out: &'a mut [[f32; 3]],
     /// To store, and to show.
     alpha: Option<[&'a mut [f32]; 2]>,
@@ -71,7 +74,7 @@ pub(super) fn run(pass: Pass<'_, '_>, method: &impl SurfaceMethod) -> FrameStats
         let (past, NextSurfaces { words: surfaces, noise, .. }) = history.split_surfaces(i);
         let in_view = InView { method, view: SurfaceHistory { inputs, quads: quads.get(i), past } };
         let traces = traces.as_mut().map(|t| &mut t[i]);
-        let targets = Targets { surfaces, noise, output: &mut output[i], alpha: None, traces };
+        let targets = Targets { surfaces, noise, albedo: &mut [], output: &mut output[i], alpha: None, traces };
         stats = stats.add(for_pixels(targets, &in_view));
         if let Some(pixel) = of_view(&mut noted, i) {
             explain(&in_view, note_surface, pixel);
@@ -85,6 +88,7 @@ pub(super) fn run(pass: Pass<'_, '_>, method: &impl SurfaceMethod) -> FrameStats
 pub(super) fn for_pixels(targets: Targets<'_>, pass: &impl ProcessPixel) -> FrameStats {
     let width = targets.output.width();
     let mut noise = targets.noise.chunks_mut(width);
+    let mut albedo = targets.albedo.chunks_mut(width);
     let mut alpha = targets
         .alpha
         .map(|AlphaTargets { stored, output }| stored.chunks_mut(width).zip(output.pixels_mut().chunks_mut(width)));
@@ -96,6 +100,7 @@ pub(super) fn for_pixels(targets: Targets<'_>, pass: &impl ProcessPixel) -> Fram
         .map(|(surfaces, out)| Row {
             surfaces,
             noise: noise.next(),
+            albedo: albedo.next(),
             out,
             alpha: alpha.as_mut().and_then(Iterator::next).map(|(stored, shown)| [stored, shown]),
             trace: traces.as_mut().and_then(Iterator::next),
@@ -114,6 +119,9 @@ impl<P: ProcessPixel> ProcessRow<Row<'_>> for P {
             row.surfaces[x] = pixel.surface;
             if let Some(noise) = &mut row.noise {
                 noise[x] = pixel.noise;
+            }
+            if let Some(albedo) = &mut row.albedo {
+                albedo[x] = pixel.albedo;
             }
             if let Some([stored, shown]) = &mut row.alpha {
                 [shown[x], stored[x]] = pixel.alpha;

@@ -65,7 +65,7 @@ impl SurfaceMethod for Taa {
             ..PixelTrace::default()
         };
         let surface = pack_surface(Surface { color: output, lod: stored_lod, disparity });
-        Pixel { output, surface, noise: 0, alpha: [1.0; 2], trace }
+        Pixel { output, surface, noise: 0, alpha: [1.0; 2], albedo: 0, trace }
     }
 }
 

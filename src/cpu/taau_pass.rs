@@ -78,7 +78,7 @@ impl SurfaceMethod for Taau {
             motion,
         };
         let surface = pack_surface(Surface { color: output, lod, disparity });
-        Pixel { output, surface, noise: 0, alpha: [1.0; 2], trace }
+        Pixel { output, surface, noise: 0, alpha: [1.0; 2], albedo: 0, trace }
     }
 }
 

@@ -2,8 +2,8 @@
 
 use crate::uniforms::ORIGINS;
 
-/// Something that passes bind, by its number. Numbers below `ORIGINS` are textures of the caller, whose views may be
-/// regions.
+/// Something that passes bind, by its number. Textures of the caller, whose views may be regions, have numbers below
+/// `ORIGINS`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 #[allow(missing_docs, reason = "outside the crate for its tests alone; the names are those of the inputs")]
@@ -24,6 +24,7 @@ pub enum Binding {
     /// Debug view beside the output.
     Debug,
     Counters,
+    Albedo,
     /// Number of the frame that wrote the history.
     PastFrame = 14,
     /// First of three textures of the previous frame's history.
@@ -58,7 +59,7 @@ pub struct Input {
 }
 
 /// The inputs of a frame.
-pub const INPUTS: [Input; 9] = [
+pub const INPUTS: [Input; 10] = [
     Input { binding: Binding::Color, name: "color", channels: 3, is_geometry: false, has: None },
     Input { binding: Binding::Depth, name: "depth", channels: 1, is_geometry: true, has: Some("HAS_DEPTH") },
     Input { binding: Binding::Motion, name: "motion", channels: 2, is_geometry: true, has: Some("HAS_MOTION") },
@@ -66,6 +67,7 @@ pub const INPUTS: [Input; 9] = [
     Input { binding: Binding::Reactive, name: "reactive", channels: 1, is_geometry: true, has: Some("HAS_REACTIVE") },
     Input { binding: Binding::Lod, name: "lod", channels: 1, is_geometry: false, has: Some("HAS_LOD") },
     Input { binding: Binding::Noise, name: "noise", channels: 2, is_geometry: false, has: None },
+    Input { binding: Binding::Albedo, name: "albedo", channels: 3, is_geometry: false, has: None },
     Input { binding: Binding::Mask, name: "mask", channels: 1, is_geometry: true, has: None },
     Input { binding: Binding::Half, name: "half", channels: 3, is_geometry: false, has: None },
 ];
@@ -86,4 +88,4 @@ pub fn used_by(pass: &str) -> Option<&'static [Binding]> {
     }
 }
 
-const _: () = assert!((Binding::Debug as usize) < ORIGINS && (Binding::QuadAround as u32) < 32);
+const _: () = assert!((Binding::Albedo as usize) < ORIGINS && (Binding::QuadAround as u32) < 32);

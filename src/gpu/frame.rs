@@ -31,6 +31,7 @@ impl<'a> Frame<'a> {
         all[Binding::Reactive as usize] = self.reactive;
         all[Binding::Lod as usize] = self.lod;
         all[Binding::Noise as usize] = self.noise;
+        all[Binding::Albedo as usize] = self.albedo;
         all[Binding::Mask as usize] = self.mask;
         all[Binding::Half as usize] = self.half;
         all

@@ -21,16 +21,16 @@ const NUMBER_BYTES: u64 = 4;
 pub(super) struct Planes {
     /// The mip chain, if any, is the second.
     pub planes: Vec<Plane>,
-    /// Alphas of stored samples, as floats, if the context keeps alpha.
-    pub alpha: Option<Plane>,
+    /// Alphas of stored samples, as floats, if the context keeps alpha; or their packed albedos, if frames have albedo.
+    pub extra: Option<Plane>,
     /// Number of the frame that wrote the textures, on the device; 0 before one did.
     pub frame: Buffer,
 }
 
 impl Planes {
-    /// The texture of binding `i` of three. The last one is that of alpha, if there is one.
+    /// The texture of binding `i` of three. The last one is that of alpha or albedo, if there is one.
     fn at(&self, i: usize) -> Option<&Plane> {
-        self.planes.get(i).or_else(|| self.alpha.as_ref().filter(|_| i == 2))
+        self.planes.get(i).or_else(|| self.extra.as_ref().filter(|_| i == 2))
     }
 }
 
@@ -53,7 +53,7 @@ impl History {
         let layout = desc.settings.history_layout();
         let planes = || Planes {
             planes: plane_descs(desc).iter().map(|plane| plane.create(device)).collect(),
-            alpha: alpha_plane(desc).map(|plane| plane.create(device)),
+            extra: extra_plane(desc).map(|plane| plane.create(device)),
             frame: device.create_buffer(&BufferDescriptor {
                 label: Some("afterimage frame number"),
                 size: 4 * NUMBER_BYTES,
@@ -146,7 +146,7 @@ pub(super) fn bound(past: &Planes, next: &Planes, number: u32) -> Option<Resourc
 
 /// Bytes that a context holds between frames.
 pub(super) fn memory_bytes(desc: &ContextDesc) -> u64 {
-    let sets: u64 = plane_descs(desc).iter().chain(&alpha_plane(desc)).map(|plane| 2 * plane.bytes()).sum();
+    let sets: u64 = plane_descs(desc).iter().chain(&extra_plane(desc)).map(|plane| 2 * plane.bytes()).sum();
     sets + candidate_plane(desc).map_or(0, |plane| plane.bytes())
 }
 
@@ -173,9 +173,9 @@ fn plane_descs(desc: &ContextDesc) -> Vec<PlaneDesc> {
     }
 }
 
-/// Alphas of stored samples, if the context keeps alpha.
-fn alpha_plane(desc: &ContextDesc) -> Option<PlaneDesc> {
-    desc.has_alpha_history().then(|| plane(desc, TextureFormat::R32Uint))
+/// Alphas or albedos of stored samples, if history has them.
+fn extra_plane(desc: &ContextDesc) -> Option<PlaneDesc> {
+    desc.has_extra_history().then(|| plane(desc, TextureFormat::R32Uint))
 }
 
 /// Mip chain of noisy candidates, if the layout has one.

@@ -6,7 +6,6 @@ use super::compute::{ComputeShader, Sources};
 use super::stage::{Job, Passes, Specialization};
 use crate::context::ContextDesc;
 use crate::method::PassShader;
-use crate::settings::Settings;
 use crate::shader::SHADERS;
 use std::sync::OnceLock;
 use wgpu::{Device, TextureFormat};
@@ -23,8 +22,10 @@ pub(super) struct MethodPass {
 
 impl MethodPass {
     /// The pass for outputs of format `output`.
-    pub fn new(device: &Device, settings: &Settings, output: TextureFormat, sources: &Sources) -> Self {
-        let pass = settings.pass_shader();
+    pub fn new(device: &Device, desc: &ContextDesc, output: TextureFormat, sources: &Sources) -> Self {
+        let pass = desc.settings.pass_shader();
+        let name = if desc.has_albedo { "quad_albedo_pass" } else { pass.name };
+        let pass = PassShader { name, ..pass };
         let shader = sources.shader_of(device, pass.name, &writing(device, &sources.text(pass.name), output));
         Self { shader, with_view: OnceLock::new(), pass, output, sources: sources.clone() }
     }

@@ -142,7 +142,17 @@ impl Afterimage {
     /// Alphas of the stored samples of the last recorded frame, as floats (`R32Uint`), if the context keeps alpha and
     /// processes planned frames by smr; usages as for [`history_textures`](Self::history_textures).
     pub fn alpha_texture(&self) -> Option<Texture> {
-        self.history.split().0.alpha.as_ref().map(|plane| plane.texture.clone())
+        self.extra_texture().filter(|_| !self.desc.has_albedo)
+    }
+
+    /// Packed albedos of these samples ([`demodulation`](crate::kernel::demodulation), `R32Uint`), if frames have
+    /// albedo.
+    pub fn albedo_texture(&self) -> Option<Texture> {
+        self.extra_texture().filter(|_| self.desc.has_albedo)
+    }
+
+    fn extra_texture(&self) -> Option<Texture> {
+        self.history.split().0.extra.as_ref().map(|plane| plane.texture.clone())
     }
 }
 
@@ -243,7 +253,7 @@ impl Afterimage {
         if self.history.is_filled() {
             let layout = history.layout();
             if self.resize.as_ref().is_none_or(|pass| pass.layout() != layout) {
-                self.resize = ResizePass::new(device, layout, self.desc.has_alpha_history(), self.stages.sources());
+                self.resize = ResizePass::new(device, layout, self.desc.has_extra_history(), self.stages.sources());
             }
             let recorder = &mut self.recorder;
             recorder.begin(0);

@@ -13,6 +13,11 @@ use wgpu::{Device, Limits, TextureFormat};
 /// Checks a description and an output format against a device.
 pub(crate) fn validate(device: &Device, desc: &ContextDesc, output: TextureFormat) -> Result<(), CreateError> {
     desc.validate()?;
+    if desc.has_albedo && desc.keep_alpha {
+        let expected = "false; or no keep_alpha, which has the same place in history".into();
+        let found = "true".into();
+        return Err(CreateError::Settings(SettingsError { setting: "has_albedo", found, expected }));
+    }
     texel(device, output)?;
     if desc.view_count as usize > MAX_VIEWS {
         return Err(CreateError::Settings(SettingsError {
@@ -67,6 +72,7 @@ pub(super) fn check_resize(device: &Device, desc: &ContextDesc, size_px: [u32; 2
 /// Checks new settings of a context against the device.
 pub(super) fn check_settings(device: &Device, desc: &ContextDesc, settings: &Settings) -> Result<(), SettingsError> {
     settings.validate()?;
+    desc.check_albedo(settings)?;
     match lacking(device, &ContextDesc { settings: *settings, ..*desc }) {
         Some(Lacking { limit, found, needed }) => {
             let [width, height] = desc.size_px;

@@ -19,12 +19,12 @@ pub(super) struct ResizePass {
 }
 
 impl ResizePass {
-    /// The pass for a layout, with alpha if the context keeps it; `None` for a layout without history.
-    pub fn new(device: &Device, layout: HistoryLayout, has_alpha: bool, sources: &Sources) -> Option<Self> {
+    /// The pass for a layout, with alphas or albedos if it has them; `None` for a layout without history.
+    pub fn new(device: &Device, layout: HistoryLayout, has_extra: bool, sources: &Sources) -> Option<Self> {
         let (name, block_px, overrides) = match layout {
             HistoryLayout::Nothing => return None,
             HistoryLayout::Sparse { noisy, means } => {
-                let overrides = [("NOISY", noisy), ("MEANS", means), ("HAS_ALPHA", has_alpha)];
+                let overrides = [("NOISY", noisy), ("MEANS", means), ("HAS_EXTRA", has_extra)];
                 ("resize_sparse_pass", 1, overrides.map(|(name, is_on)| (name, u32::from(is_on))).into())
             }
             HistoryLayout::Reservoirs { keys, references } => {

@@ -155,8 +155,10 @@ impl Job<'_> {
             None if number == Binding::QuadMask as u32 => Some((&self.quads?.mask.whole).into()),
             None if number == Binding::QuadAround as u32 => Some((&self.quads?.around.whole).into()),
             None if number == Binding::Counters as u32 => self.counters.map(Resource::from),
-            None if (number as usize) < ORIGINS => Some(self.textures[number as usize]?.bind(batch)),
-            None => self.history.bound(number),
+            None => match self.textures.get(number as usize).copied().flatten() {
+                Some(textures) => Some(textures.bind(batch)),
+                None => self.history.bound(number),
+            },
         };
         self.recorder.add(self.device, (shader, pipeline), Some(&uniforms), resource, workgroups);
     }

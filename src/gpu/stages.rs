@@ -50,7 +50,7 @@ impl Stages {
             Stage::Candidates => Box::new(CandidatePass::new(device, desc, sources)),
             Stage::Fill => Box::new(Fill::new(device, desc, sources)),
             Stage::Quads => Box::new(QuadSamplePasses::new(device, desc, sources)),
-            Stage::Method => Box::new(MethodPass::new(device, &desc.settings, self.output, sources)),
+            Stage::Method => Box::new(MethodPass::new(device, desc, self.output, sources)),
             Stage::MipChain => Box::new(MipChainPass::new(device, desc, sources, false)),
         }
     }

@@ -10,6 +10,7 @@ pub mod antialias;
 pub mod approx;
 pub mod color;
 pub mod debug_view;
+pub mod demodulation;
 pub mod depth;
 pub mod doctor;
 pub mod foveate;

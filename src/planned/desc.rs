@@ -91,6 +91,10 @@ pub struct Desc {
     /// Whether the output has the alpha of the colors, with a history like theirs, instead of 1. It takes 8 more bytes
     /// a pixel. Default false.
     pub keep_alpha: bool,
+    /// Whether frames have the [albedo](super::Frame::albedo) of every pixel: samples then show light, and texture is
+    /// the pixel's own. It needs `antialias`, excludes `keep_alpha` and `is_noisy`, and takes 8 more bytes a pixel.
+    /// Default false.
+    pub has_albedo: bool,
     /// Whether the renderer draws [quarter frames](super::Plan::quarters) at half the width and height. Otherwise the
     /// first frame, and those after cuts, are shaded at every pixel by rasterisers, and are right, too. Default false.
     pub draws_quarters: bool,
@@ -114,6 +118,7 @@ impl Desc {
             has_distances: false,
             antialias: true,
             keep_alpha: false,
+            has_albedo: false,
             draws_quarters: false,
             single_pixels: false,
             is_noisy: false,
@@ -137,6 +142,7 @@ impl Desc {
             motion: self.motion.unwrap_or(still),
             depth: DepthConvention::Linear,
             keep_alpha: self.keep_alpha,
+            has_albedo: self.has_albedo,
             settings: self.settings(),
             ..ContextDesc::new(self.size_px)
         }

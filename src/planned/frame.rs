@@ -28,6 +28,11 @@ pub struct Frame<'a> {
     /// the number of samples that were averaged into the color. `Rg16Float`, `Rg32Float` or wider. It is drawn with the
     /// colors, and [`show`](super::Afterimage::show) reads it.
     pub noise: Option<&'a Texture>,
+    /// Of frames that [have it](super::Desc::has_albedo), the albedo of every pixel: the reflectance that multiplies
+    /// light, 0 to 1, diffuse plus specular, in the same primaries as the color, and 0 for the sky and for what shines
+    /// itself. It is jittered like the color. Any float or normalised format with three channels. It may be drawn with
+    /// the depth or with the colors: [`show`](super::Afterimage::show) reads it.
+    pub albedo: Option<&'a Texture>,
     /// Exposure of the colors. Default [`Exposure::Same`].
     pub exposure: Exposure,
 }
@@ -43,6 +48,7 @@ impl<'a> Frame<'a> {
             is_cut: false,
             reactive: None,
             noise: None,
+            albedo: None,
             exposure: Exposure::Same,
         }
     }
@@ -59,6 +65,7 @@ pub struct Plan {
     pub(super) motion: Option<Texture>,
     pub(super) reactive: Option<Texture>,
     pub(super) noise: Option<Texture>,
+    pub(super) albedo: Option<Texture>,
     /// Mask of a renderer that chose the pixels itself.
     pub(super) given: Option<Texture>,
     pub(super) is_cut: bool,
@@ -107,6 +114,7 @@ impl Plan {
             motion: self.motion.as_ref().map(Into::into),
             reactive: self.reactive.as_ref().map(Into::into),
             noise: self.noise.as_ref().map(Into::into),
+            albedo: self.albedo.as_ref().map(Into::into),
             mask: self.given.as_ref().map(Into::into),
             half: half.map(Into::into),
             reset: if self.is_cut { Reset::All } else { Reset::None },

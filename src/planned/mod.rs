@@ -219,6 +219,7 @@ impl Afterimage {
             motion: frame.motion.cloned(),
             reactive: frame.reactive.cloned(),
             noise: frame.noise.cloned(),
+            albedo: frame.albedo.cloned(),
             given: None,
             is_cut: frame.is_cut,
             exposure: frame.exposure,

@@ -43,6 +43,7 @@ pub fn any_frame(draws: &mut Draws, wild: f32) -> View {
         motion: Some(Image::from_fn(SIZE, |_| shift.map(|v| vector(d, v)))),
         trust: Some(Image::from_fn(SIZE, |_| number(d, wild, 0.5, 1.0))),
         reactive: None,
+        albedo: None,
         mask: None,
         half: None,
         lod: Some(Image::from_fn(SIZE, |_| number(d, wild, 0.0, 4.0))),

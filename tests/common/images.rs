@@ -19,6 +19,8 @@ pub struct View {
     pub lod: Option<Image<f32>>,
     /// Standard errors and numbers of samples of noisy frames.
     pub noise: Option<Image<[f32; 2]>>,
+    /// Of frames with albedo.
+    pub albedo: Option<Image<[f32; 3]>>,
     /// Pixels that the renderer chose itself, of a planned frame.
     pub mask: Option<Image<f32>>,
     /// Colors of quads that are shaded in part, one a quad.
@@ -29,8 +31,8 @@ impl View {
     /// Without optional inputs, under 70 degrees.
     pub fn still(color: Image<[f32; 3]>, gaze_px: [f32; 2]) -> Self {
         let facts = ViewFrame::new(ViewGeometry::flat(color.size(), 70.0).unwrap(), Gaze::At { px: gaze_px });
-        let (trust, reactive, mask, half) = (None, None, None, None);
-        Self { facts, color, depth: None, motion: None, trust, reactive, lod: None, noise: None, mask, half }
+        let (trust, reactive, albedo, mask, half) = (None, None, None, None, None);
+        Self { facts, color, depth: None, motion: None, trust, reactive, lod: None, noise: None, albedo, mask, half }
     }
 
     /// With other images or facts.
@@ -84,6 +86,7 @@ pub struct Images<'a> {
     reactive: Vec<&'a Image<f32>>,
     lod: Vec<&'a Image<f32>>,
     noise: Vec<&'a Image<[f32; 2]>>,
+    albedo: Vec<&'a Image<[f32; 3]>>,
     mask: Vec<&'a Image<f32>>,
     half: Vec<&'a Image<[f32; 3]>>,
 }
@@ -100,6 +103,7 @@ impl<'a> Images<'a> {
             reactive: views.iter().filter_map(|v| v.reactive.as_ref()).collect(),
             lod: views.iter().filter_map(|v| v.lod.as_ref()).collect(),
             noise: views.iter().filter_map(|v| v.noise.as_ref()).collect(),
+            albedo: views.iter().filter_map(|v| v.albedo.as_ref()).collect(),
             mask: views.iter().filter_map(|v| v.mask.as_ref()).collect(),
             half: views.iter().filter_map(|v| v.half.as_ref()).collect(),
         }
@@ -113,6 +117,7 @@ impl<'a> Images<'a> {
             reactive: given(&self.reactive),
             lod: given(&self.lod),
             noise: given(&self.noise),
+            albedo: given(&self.albedo),
             mask: given(&self.mask),
             half: given(&self.half),
             ..Frame::new(&self.color, &self.views, index)

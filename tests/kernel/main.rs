@@ -2,6 +2,7 @@
 
 mod color;
 mod conventions;
+mod demodulation;
 mod depth;
 mod elementary;
 mod geometry;

@@ -136,6 +136,7 @@ fn damage_is_noticed() {
         quads: vec![],
         paths: vec![],
         alpha: vec![],
+        albedo: vec![],
         stats: Default::default(),
     };
     let checked = |method, value: f32| {

@@ -35,6 +35,7 @@ impl View<'_> {
             mixed: None,
             is_silhouette: false,
             is_edge: false,
+            is_moving_edge: false,
         };
         if !self.antialiases || !self.inputs.tests_depth() {
             return alone;
@@ -64,8 +65,8 @@ impl View<'_> {
         let farthest_motion = self.inputs.motion(farthest_at[0], farthest_at[1]);
         let [own_px, nearest_px, farthest_px] = [own_motion, motion, farthest_motion].map(Vec2::from);
         // Still edges have long means of their own samples. Others would make them worse.
-        let is_edge = edge && level > 0 && has_moved(own_motion, nearest_px);
-        let mut surface = Surroundings { is_edge, ..alone };
+        let is_moving_edge = edge && level > 0 && has_moved(own_motion, nearest_px);
+        let mut surface = Surroundings { is_edge: edge, is_moving_edge, ..alone };
         if stands_before(own, nearest, own_px, nearest_px, level == 0) {
             let moved_px = self.inputs.moved_px(nearest_at, nearest, motion);
             surface = Surroundings { disparity: nearest, motion, stored: nearest, moved_px, ..surface };

@@ -3,6 +3,7 @@
 use super::view::NO_NOISE;
 use crate::kernel::antialias::BESIDE_PX2;
 use crate::kernel::color::luma;
+use crate::kernel::demodulation::AlbedoChange;
 use crate::kernel::noise::{Noise, borrowed};
 use crate::kernel::resample::codes_between;
 use crate::kernel::sparse_smr::{BY_NEIGHBOURS, Lit, OTHER_SURFACE, Observation, SAMPLE_RELATIVE, candidate_level};
@@ -29,6 +30,8 @@ pub(super) struct Candidate {
     pub is_own: bool,
     /// Color of the sample of the pixel's surface beside it, if there is one.
     pub beside: Option<Vec3>,
+    /// Of frames with albedo.
+    pub albedo: AlbedoChange,
     /// Of a noisy pixel with a sample: mean of all samples around it, its own included, and the mean variance of one.
     pub around: (Vec3, f32),
 }
@@ -45,6 +48,7 @@ impl Candidate {
         alpha: 1.0,
         is_own: false,
         beside: None,
+        albedo: AlbedoChange::NONE,
         around: (Vec3::ZERO, 0.0),
     };
 
@@ -58,6 +62,18 @@ impl Candidate {
         let variance = self.noise.variance + (variance - self.noise.variance) * share;
         let noise = Noise { variance, ..self.noise };
         Self { color: self.color + (mean - self.color) * share, noise, ..self }
+    }
+
+    /// With the texture of the pixel's own albedo.
+    #[inline(always)]
+    pub fn textured(self, albedo: AlbedoChange) -> Self {
+        Self {
+            color: self.color * albedo.factor,
+            range: self.range.map(|color| color * albedo.factor),
+            beside: self.beside.map(|color| color * albedo.factor),
+            albedo,
+            ..self
+        }
     }
 
     #[inline(always)]
@@ -105,7 +121,7 @@ pub(super) struct Sums {
     /// Smallest and largest color.
     range: [Vec3; 2],
     /// Squared distance in pixels of the nearest sample of the pixel's surface.
-    nearest_px2: f32,
+    pub nearest_px2: f32,
     /// Color of this sample, the first of equally near ones.
     nearest: Vec3,
     /// Color and alpha of the pixel's own sample, and the fit of history there.
@@ -145,6 +161,12 @@ impl Sums {
         weight
     }
 
+    /// Whether a sample shows the pixel's surface.
+    #[inline(always)]
+    pub fn has_surface(&self) -> bool {
+        self.nearest_px2 < f32::MAX
+    }
+
     /// Candidate of the pixel, without noise, where samples have a distance of 2^`level` pixels.
     #[inline(always)]
     pub fn candidate(self, level: u32) -> Candidate {
@@ -168,6 +190,7 @@ impl Sums {
             alpha,
             is_own: self.own.is_some(),
             beside: (self.nearest_px2 <= BESIDE_PX2).then_some(self.nearest),
+            albedo: AlbedoChange::NONE,
             around: (Vec3::ZERO, 0.0),
         }
     }

@@ -6,6 +6,7 @@
 //! interpolates gain, fit and samples for each pixel, reads the stored samples around the pixel's previous position,
 //! and blends.
 
+mod albedo;
 mod antialias;
 mod candidate;
 mod light;
@@ -27,7 +28,7 @@ use super::inputs::Inputs;
 use super::surface_pass::{AlphaTargets, Targets, for_pixels};
 use crate::stats::FrameStats;
 use pixel::LitView;
-use view::{GivenAlpha, View};
+use view::{GivenAlbedo, GivenAlpha, View};
 
 /// Runs the three loops for every view.
 pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
@@ -37,12 +38,13 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
     for (i, quads) in quads.iter().enumerate() {
         let state = history.advance(i, frame);
         let inputs = Inputs::new(desc, frame, i, &state, has_history);
-        let (past, NextSurfaces { words: surfaces, noise, alpha: stored }) = history.split_surfaces(i);
+        let (past, NextSurfaces { words: surfaces, noise, alpha: stored, albedo }) = history.split_surfaces(i);
         let given = alpha.as_ref().map(|alpha| GivenAlpha { given: alpha.given[i], past: past.alpha });
-        let view = View { alpha: given, ..View::new(desc, frame, inputs, past.words, past.noise) };
+        let textures = frame.albedo.map(|albedo| GivenAlbedo { given: albedo[i], past: past.albedo });
+        let view = View { alpha: given, albedo: textures, ..View::new(desc, frame, inputs, past.words, past.noise) };
         let traces = traces.as_mut().map(|t| &mut t[i]);
         let alpha = alpha.as_mut().map(|alpha| AlphaTargets { stored, output: &mut alpha.output[i] });
-        let targets = Targets { surfaces, noise, output: &mut output[i], alpha, traces };
+        let targets = Targets { surfaces, noise, albedo, output: &mut output[i], alpha, traces };
         let lights = view.light_quads(quads, &view.observe_quads(quads));
         let lit = LitView { view: &view, quads, lights: &lights };
         stats = stats.add(for_pixels(targets, &lit));

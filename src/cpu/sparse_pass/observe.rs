@@ -48,7 +48,7 @@ impl View<'_> {
             let [x, y] = self.inputs.uniforms.jitter_px;
             source.previous.at = [source.previous.at[0] - x, source.previous.at[1] - y];
         }
-        let Found { history, noise: past, mean, .. } = self.interpolated(&source, &mut NoNotes);
+        let Found { history, noise: past, mean, .. } = self.interpolated(&source, None, &mut NoNotes);
         if history.lod < 0.0 {
             return None;
         }

@@ -1,5 +1,6 @@
 //! Reconstruction of pixels from history, and from the samples around them and their light.
 
+use super::albedo::Untextured;
 use super::quad_samples::QuadLights;
 use super::quads::Quads;
 use super::sparse_history::{Found, Source, has_moved};
@@ -12,7 +13,7 @@ use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::noise::pack_noise;
 use crate::kernel::reproject::Verdict;
 use crate::kernel::sanitize;
-use crate::kernel::sparse_smr::{Reconstruction, accumulate, reconstruct, relit, result_alpha, worn};
+use crate::kernel::sparse_smr::{Reconstructed, Reconstruction, accumulate, reconstruct, relit, result_alpha, worn};
 use crate::kernel::stored_sample::{StoredSample, pack_stored, with_motion};
 use crate::notes::{NoteStage, Notes};
 use crate::stats::FrameStats;
@@ -41,7 +42,8 @@ impl LitView<'_> {
         if !inputs.is_visible(x, y) {
             // Outside the visible area: black, without stored history.
             let (surface, noise) = (pack_stored(StoredSample::EMPTY), pack_noise(NO_NOISE));
-            return Pixel { output: Vec3::ZERO, surface, noise, alpha: [1.0; 2], trace: PixelTrace::default() };
+            let trace = PixelTrace::default();
+            return Pixel { output: Vec3::ZERO, surface, noise, alpha: [1.0; 2], albedo: 0, trace };
         }
         let disparity = inputs.disparity(x, y);
         let level = quads.level_at([x, y]);
@@ -51,7 +53,11 @@ impl LitView<'_> {
         surface.note(notes);
         let source = view.source([x, y], &surface, notes);
         let is_final = candidate.usable && level == 0 && !view.is_noisy && !view.antialiases;
-        let history = source.as_ref().ok().filter(|_| !is_final).map(|source| view.interpolated(source, notes));
+        let history = source
+            .as_ref()
+            .ok()
+            .filter(|_| !is_final)
+            .map(|source| view.interpolated(source, view.past_albedos([x, y]), notes));
         let history = history.filter(|found| found.history.lod >= 0.0);
         let verdict = match &source {
             Err(verdict) => *verdict,
@@ -83,11 +89,15 @@ impl LitView<'_> {
         let mut noise = candidate.noise;
         // To show, and to store.
         let mut alpha = [candidate.alpha; 2];
+        let mut albedos = None;
+        let mut result = Reconstructed { color: output, stored, share: 0.0, keeps_nearest: false, stored_share: 0.0 };
         if let (Ok(Source { previous, .. }), Some(found)) = (source, history) {
-            let Found { history, noise: past, mean: past_mean, alpha: past_alpha } = found;
+            let Found { history, noise: past, mean: past_mean, alpha: past_alpha, albedos: past_albedos } = found;
+            albedos = past_albedos;
             if !candidate.usable {
                 (output, share, noise, mean, alpha) = (history.color, 1.0, past, past_mean, past_alpha);
                 stored = StoredSample { disparity: surface.stored, ..history.nearest };
+                result = Reconstructed { color: output, stored, share, keeps_nearest: true, stored_share: 1.0 };
             } else {
                 let moved = match view.antialiases {
                     true => has_moved(surface.motion, Vec2::ZERO),
@@ -111,17 +121,17 @@ impl LitView<'_> {
                     notes.note(NoteStage::Light, "history after the gain", history, "linear light");
                     notes.note(NoteStage::Decision, "fit", inputs.fit, "");
                 }
-                let result = if view.is_noisy {
+                result = if view.is_noisy {
                     let accumulated = accumulate(&inputs, past, candidate.noise);
                     noise = accumulated.noise;
                     accumulated.result
                 } else if view.antialiases {
                     let contrast = root_difference(history.range[0], history.range[1]);
                     let error = expected_mean_error(past_mean, contrast, moved);
-                    let beside = candidate.beside.filter(|_| surface.is_edge && inputs.nearest.lod <= 0.0);
+                    let beside = candidate.beside.filter(|_| surface.is_moving_edge && inputs.nearest.lod <= 0.0);
                     let averaged = if candidate.is_own {
                         let past = with_regular_run(past_mean, level);
-                        view.averaged(near, surface.is_edge, inputs, past, error, notes)
+                        view.averaged(near, surface.is_moving_edge, inputs, past, error, notes)
                     } else if let Some(beside) = beside {
                         notes.note(NoteStage::Decision, "sample beside the pixel", beside, "linear light");
                         let inputs = Reconstruction { candidate: beside, ..inputs };
@@ -139,6 +149,21 @@ impl LitView<'_> {
                 stored = StoredSample { disparity: surface.stored, ..result.stored };
             }
         }
+        let (of_candidate, samples) = (candidate.albedo.albedo, mean.samples);
+        let retextured = view.retexture(&Untextured {
+            px: [x, y],
+            level,
+            at_edge: surface.is_edge,
+            of_candidate,
+            past: albedos,
+            result,
+            samples,
+        });
+        if let Some(texture) = retextured {
+            output *= texture.shown;
+            stored.color *= texture.stored;
+            stored.place_px += (view.sample_place_px() - stored.place_px) * texture.place_share;
+        }
         // Means of colors may exceed the largest half.
         output = output.clamp(Vec3::splat(-sanitize::MAX_HALF), Vec3::splat(sanitize::MAX_HALF));
         stats.replaced += u64::from(verdict == Verdict::Valid && share == 0.0);
@@ -154,6 +179,7 @@ impl LitView<'_> {
         };
         let stored = if view.antialiases { view.packed_mean([x, y], stored, mean) } else { pack_stored(stored) };
         let stored = with_motion(stored, surface.moved_px);
-        Pixel { output, surface: stored, noise: pack_noise(noise), alpha, trace }
+        let albedo = retextured.map_or(0, |texture| texture.word);
+        Pixel { output, surface: stored, noise: pack_noise(noise), alpha, albedo, trace }
     }
 }

@@ -5,6 +5,7 @@ use super::light::{Neighbour, observed_around, votes};
 use super::observe::{pack_observation, unpack_observation};
 use super::quads::{Quads, offset_px2};
 use super::view::{Samples, View};
+use crate::kernel::demodulation::{AlbedoChange, add_albedo, candidate_change, no_albedos};
 use crate::kernel::depth::INVALID_DISPARITY;
 use crate::kernel::noise::{NoiseSum, add_noise, mean_noise, noisy_share};
 use crate::kernel::quads::WHOLE;
@@ -150,12 +151,15 @@ impl View<'_> {
             }
             let (color, usable) = self.color_px(quads, px);
             let alpha = if usable { self.alpha_at(px) } else { 1.0 };
-            return Candidate { color, usable, alpha, is_own: usable, ..Candidate::NONE };
+            let albedo = if usable { AlbedoChange::none(self.albedo_at(px).truncate()) } else { AlbedoChange::NONE };
+            return Candidate { color, usable, alpha, is_own: usable, albedo, ..Candidate::NONE };
         }
         let codes = sample_codes(disparity);
         let mut sums = Sums::NOTHING;
         let columns = quads.size()[0];
         let mut noises = NoiseSum::default();
+        let own_albedo = self.albedo_at(px);
+        let mut albedos = no_albedos(own_albedo.truncate());
         let mut add = |at: [u32; 2]| {
             let (color, usable) = self.color_px(quads, at);
             if !usable {
@@ -169,6 +173,9 @@ impl View<'_> {
             let share = if at == px { 1.0 } else { 1.0 / px2 };
             let alpha = self.alpha_at(at);
             let weight = sums.add((color, alpha), lit, share, px2, alike);
+            if self.albedo.is_some() {
+                albedos = add_albedo(albedos, own_albedo, self.albedo_at(at), color, weight);
+            }
             if N::ON {
                 note_sample(notes, at, weight, color, lit, self.observe_px(at, level, color, usable));
             }
@@ -180,7 +187,14 @@ impl View<'_> {
             }
         };
         quads.samples_around(px).for_each(&mut add);
+        let has_surface = sums.has_surface();
         let mut candidate = sums.candidate(level);
+        if self.albedo.is_some() && candidate.is_own {
+            candidate.albedo = AlbedoChange::none(own_albedo.truncate());
+        } else if self.albedo.is_some() && candidate.usable {
+            let change = candidate_change(albedos, own_albedo, has_surface);
+            candidate = candidate.textured(change);
+        }
         if self.is_noisy && candidate.usable {
             candidate.noise = if candidate.is_own { self.sample_noise(px) } else { mean_noise(noises) };
         }

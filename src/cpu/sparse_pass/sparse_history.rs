@@ -1,6 +1,7 @@
 //! Stored samples around the previous position of a pixel's surface: the step `ReprojectHistoryColor` of FSR2 (AMD
 //! 2022), which resamples history by Lanczos in every frame.
 
+use super::albedo::PastAlbedos;
 use super::view::{NO_NOISE, View};
 use crate::cpu::inputs::Previous;
 use crate::kernel::antialias::{Mean, ONE_SAMPLE_LOD, is_of_surfaces, mean_lod, mean_of};
@@ -28,8 +29,10 @@ pub(super) struct Surroundings {
     pub mixed: Option<[f32; 2]>,
     /// Whether history is the mean of several surfaces, of which a sample shows one.
     pub is_silhouette: bool,
-    /// Whether the pixel is at a moving edge of a surface, outside the fovea.
+    /// Whether the pixel is at an edge of a surface.
     pub is_edge: bool,
+    /// Whether that edge moves, and is outside the fovea.
+    pub is_moving_edge: bool,
 }
 
 impl Surroundings {
@@ -39,7 +42,7 @@ impl Surroundings {
         notes.note(NoteStage::Reprojection, "its disparity now", self.disparity, "1/distance");
         notes.note(NoteStage::Reprojection, "its motion in the world", self.moved_px, "px a frame");
         notes.note(NoteStage::Reprojection, "silhouette, history is a mean of surfaces", self.is_silhouette, "");
-        notes.note(NoteStage::Reprojection, "moving edge of a surface", self.is_edge, "");
+        notes.note(NoteStage::Reprojection, "moving edge of a surface", self.is_moving_edge, "");
     }
 }
 
@@ -63,6 +66,8 @@ pub(super) struct Found {
     pub mean: Mean,
     /// Alpha at the position, and of the sample to keep.
     pub alpha: [f32; 2],
+    /// Sums over the albedos of its texels.
+    pub albedos: Option<PastAlbedos>,
 }
 
 impl View<'_> {
@@ -127,11 +132,13 @@ impl View<'_> {
     }
 
     /// History at a previous position, in this frame's exposure. At a silhouette the nearest stored sample may belong
-    /// to another surface (`is_same` is false). Samples beside it then replace it if they are near enough.
+    /// to another surface (`is_same` is false). Samples beside it then replace it if they are near enough. `albedos`:
+    /// sums over none.
     #[inline(always)]
     pub(super) fn interpolated<N: Notes>(
         &self,
         Source { previous, is_same, codes, moved_px }: &Source,
+        mut albedos: Option<PastAlbedos>,
         notes: &mut N,
     ) -> Found {
         // The place of a mean may lie anywhere around its texel's centre, so that the eight texels around the nearest
@@ -169,12 +176,19 @@ impl View<'_> {
                 let stored = StoredSample { color: Vec3::splat(alpha), ..stored };
                 alphas = add_stored(alphas, stored, texel_px, same, inverse_reach);
             }
-            if around.cost < cost {
+            let is_nearest = around.cost < cost;
+            if same {
+                let word = self.stored_albedo(tx, ty);
+                albedos = albedos.map(|albedos| albedos.add(word, stored, texel_px, inverse_reach, is_nearest));
+            }
+            if is_nearest {
                 (nearest_texel, kept_lod) = ([tx, ty], lod);
             }
         }
         notes.note(NoteStage::History, "sum of weights", around.weight, "");
-        let found = interpolate(if *is_same || can_replace(around) { around } else { Around::NOTHING });
+        let around = if *is_same || can_replace(around) { around } else { Around::NOTHING };
+        let albedos = albedos.map(|albedos| albedos.with_shown(around));
+        let found = interpolate(around);
         let exposed = |c: Vec3| expose(c, self.inputs.exposure);
         let nearest = StoredSample { color: exposed(found.nearest.color), ..found.nearest };
         let history = Interpolated { color: exposed(found.color), range: found.range.map(exposed), nearest, ..found };
@@ -190,7 +204,7 @@ impl View<'_> {
             let Interpolated { color, range: [low, high], nearest, .. } = interpolate(alphas);
             [color.x.max(low.x).min(high.x), nearest.color.x]
         });
-        Found { history, noise: self.stored_noise(nearest_texel), mean: kept, alpha }
+        Found { history, noise: self.stored_noise(nearest_texel), mean: kept, alpha, albedos }
     }
 }
 

@@ -20,6 +20,12 @@ pub(super) struct GivenAlpha<'a> {
     pub past: &'a [f32],
 }
 
+/// Albedo of a view's pixels, and packed albedos of its stored samples.
+pub(super) struct GivenAlbedo<'a> {
+    pub given: &'a Image<[f32; 3]>,
+    pub past: &'a [u32],
+}
+
 /// Inputs and history of one view of a frame.
 pub(super) struct View<'a> {
     pub inputs: Inputs<'a>,
@@ -28,6 +34,8 @@ pub(super) struct View<'a> {
     pub noise: &'a [u32],
     /// `None` in frames without alpha, which is 1 then.
     pub alpha: Option<GivenAlpha<'a>>,
+    /// `None` in frames without albedo.
+    pub albedo: Option<GivenAlbedo<'a>>,
     pub accumulate: f32,
     pub relights: bool,
     /// Whether candidates are noisy.
@@ -52,6 +60,7 @@ impl<'a> View<'a> {
             words,
             noise,
             alpha: None,
+            albedo: None,
             accumulate: desc.settings.method.smr().accumulate,
             relights: crate::method::smr_sparse_relights(&desc.settings),
             is_noisy: desc.settings.noisy,

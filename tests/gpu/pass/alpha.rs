@@ -65,7 +65,7 @@ fn alpha_follows_a_change_of_size() {
 fn wrong_alpha_is_caught() {
     let planted = [
         ("if HAS_ALPHA == 0u {", "if true {"),
-        ("vec3f(stored_alpha(texel, view))", "vec3f(stored_alpha(first, view))"),
+        ("bitcast<f32>(extra_word(texel, view))", "bitcast<f32>(extra_word(first, view))"),
         ("clamp(shown.color.x, shown.lowest.x, shown.highest.x)", "shown.color.x"),
         ("vec4u(bitcast<u32>(alpha.y)", "vec4u(bitcast<u32>(alpha.x)"),
         ("alpha = found.alpha;", ""),

@@ -1,5 +1,6 @@
 //! The pass on the GPU against its twin on the CPU: whole sequences, decisions and stored state bit for bit.
 
+mod albedo;
 mod alpha;
 mod antialiasing;
 mod bare;

@@ -36,7 +36,7 @@ pub struct Rig {
     pub beside: Option<DebugView>,
     /// Alpha of the colors of planned frames of smr to come, one image a view; 1, and not read back, without.
     pub alpha: Option<Vec<Image<f32>>>,
-    textures: [Texture; 11],
+    textures: [Texture; 12],
     counters: Buffer,
     /// What the device has compiled; `None` once it is of no use to other tests.
     compiled: Option<Sources>,
@@ -71,22 +71,23 @@ pub fn device_of_five_outputs() -> Option<(Device, Queue)> {
     afterimage_testing::gpu::device_with(&wgpu::DeviceDescriptor { required_limits, ..Default::default() })
 }
 
-// Places of textures: color, depth, motion, trust and reactive masks, levels of detail, noise, own mask and colors of
-// half the size; output, debug view.
+// Places of textures: color, depth, motion, trust and reactive masks, levels of detail, noise, own mask, colors of half
+// the size and albedo; output, debug view.
 const COLOR: usize = 0;
 const MOTION: usize = 2;
 const NOISE: usize = 6;
 const HALF: usize = 8;
-const OUTPUT: usize = 9;
-const DEBUG: usize = 10;
+const ALBEDO: usize = 9;
+const OUTPUT: usize = 10;
+const DEBUG: usize = 11;
 
 const READ: TextureUsages =
     TextureUsages::TEXTURE_BINDING.union(TextureUsages::COPY_DST).union(TextureUsages::COPY_SRC);
 
-fn make_textures(device: &Device, context: &ContextDesc) -> [Texture; 11] {
+fn make_textures(device: &Device, context: &ContextDesc) -> [Texture; 12] {
     std::array::from_fn(|i| {
         let format = match i {
-            COLOR | HALF | OUTPUT => TextureFormat::Rgba32Float,
+            COLOR | HALF | ALBEDO | OUTPUT => TextureFormat::Rgba32Float,
             DEBUG => TextureFormat::Rgba16Float,
             MOTION | NOISE => TextureFormat::Rg32Float,
             _ => TextureFormat::R32Float,
@@ -116,12 +117,13 @@ fn texels(view: &View, alpha: Option<&Image<f32>>) -> [Option<Vec<f32>>; OUTPUT]
         view.noise.as_ref().map(two),
         view.mask.as_ref().map(one),
         view.half.as_ref().map(four),
+        view.albedo.as_ref().map(four),
     ]
 }
 
 /// The frame with those of the textures that the view has.
-fn given<'a>(view: &View, textures: [Textures<'a>; 11], frame: Frame<'a>) -> Frame<'a> {
-    let [_, depth, motion, trust, reactive, lod, noise, mask, half, ..] = textures;
+fn given<'a>(view: &View, textures: [Textures<'a>; 12], frame: Frame<'a>) -> Frame<'a> {
+    let [_, depth, motion, trust, reactive, lod, noise, mask, half, albedo, ..] = textures;
     Frame {
         depth: view.depth.is_some().then_some(depth),
         motion: view.motion.is_some().then_some(motion),
@@ -131,6 +133,7 @@ fn given<'a>(view: &View, textures: [Textures<'a>; 11], frame: Frame<'a>) -> Fra
         noise: view.noise.is_some().then_some(noise),
         mask: view.mask.is_some().then_some(mask),
         half: view.half.is_some().then_some(half),
+        albedo: view.albedo.is_some().then_some(albedo),
         ..frame
     }
 }
@@ -146,6 +149,8 @@ pub struct Made {
     pub paths: Vec<u32>,
     /// Output alphas of frames with [alpha](Rig::alpha).
     pub alpha: Vec<u32>,
+    /// Packed albedos of history, of contexts with albedo.
+    pub albedo: Vec<u32>,
     pub stats: FrameStats,
 }
 
@@ -159,7 +164,7 @@ impl Made {
         if afterimage_testing::gpu::rounds_as_the_cpu() {
             let differs = |&i: &usize| {
                 let is_colored = self.words.get(i) != cpu.words.get(i) || self.shown[i] != cpu.shown[i];
-                is_colored || self.alpha.get(i) != cpu.alpha.get(i)
+                is_colored || self.alpha.get(i) != cpu.alpha.get(i) || self.albedo.get(i) != cpu.albedo.get(i)
             };
             let first = (0..cpu.shown.len()).find(differs);
             let quads = self.quads.iter().zip(&cpu.quads).filter(|(gpu, cpu)| gpu != cpu).count();
@@ -348,7 +353,8 @@ impl Rig {
         };
         let alpha = alpha.iter().flat_map(|o| o.pixels()).map(|alpha| alpha.to_bits()).collect();
         let shown = output.iter().flat_map(|o| o.pixels()).map(|c| c.map(f32::to_bits)).collect();
-        (Made { shown, words: held_words(&self.cpu), quads, paths, alpha, stats }, trace)
+        let albedo = self.cpu.history().albedo().to_vec();
+        (Made { shown, words: held_words(&self.cpu), quads, paths, alpha, albedo, stats }, trace)
     }
 
     /// Whether the executors differ on a frame: what a planted error must do.
@@ -396,7 +402,7 @@ impl Rig {
         let all = (0..).zip(&self.textures).filter(|_| self.scattered);
         let all: Vec<_> = all.map(|(i, texture)| Scattered::new(&self.device, &self.queue, texture, i)).collect();
         let regions: Vec<_> = all.iter().map(Scattered::regions).collect();
-        let textures: [_; 11] =
+        let textures: [_; 12] =
             std::array::from_fn(|i| regions.get(i).map_or((&self.textures[i]).into(), |r| Textures::Regions(r)));
         let [.., output, debug] = textures;
         let frame = Frame {
@@ -424,7 +430,9 @@ impl Rig {
 
     /// Fills history, all its levels, with words that are NaN in any format.
     pub fn poison(&self) {
-        for texture in self.gpu.history_textures().into_iter().chain(self.gpu.alpha_texture()) {
+        for texture in
+            self.gpu.history_textures().into_iter().chain(self.gpu.alpha_texture()).chain(self.gpu.albedo_texture())
+        {
             for level in 0..texture.mip_level_count() {
                 afterimage_testing::gpu::fill_level(&self.queue, &texture, level, 0xff);
             }
@@ -459,6 +467,7 @@ impl Rig {
             paths: mask.iter().zip(&quads).map(|(word, quad)| (word >> 8) & (31 * quad.min(&1))).collect(),
             quads,
             alpha: shown.chunks_exact(4).filter(|_| self.alpha.is_some()).map(|c| c[3]).collect(),
+            albedo: self.gpu.albedo_texture().map(|texture| self.read_texture(&texture)).unwrap_or_default(),
             stats: FrameStats::from_counters(&counters).unwrap(),
         }
     }

@@ -64,6 +64,10 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ("sparse_smr::reconstruct", "share >= KEEP_SHARE && near", "share >= KEEP_SHARE"),
     ("sparse_smr::accumulate", "near && share >= STAY_SHARE", "share >= STAY_SHARE"),
     ("depth::disparity", "if v < 1e-30", "if v < 1e-29"),
+    ("demodulation::add_albedo", "select(own.xyz, there.xyz, there.w > 0.0)", "there.xyz"),
+    ("demodulation::past_albedo", "> 1.0f / ALBEDO_STEPS", "> 2.0f / ALBEDO_STEPS"),
+    ("demodulation::pack_albedo", "* ALBEDO_STEPS + up", "* ALBEDO_STEPS + 0.5"),
+    ("demodulation::retextured", "(unpack_albedo(word).xyz - goal)", "vec3f(0.0)"),
     ("antialias::clip", "max(abs(by.x), abs(by.y))", "abs(by.x)"),
 ];
 

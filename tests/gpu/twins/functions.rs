@@ -20,6 +20,7 @@ macro_rules! bit_equal {
 
 bit_equal! {
     acuity_is_bit_equal_h61_h62_h64_h65: "acuity";
+    demodulation_is_bit_equal: "demodulation";
     approx_is_bit_equal_h38_h61: "approx";
     color_is_bit_equal_h30_h31_h32_h33_h36_h37_h38: "color";
     debug_view_is_bit_equal: "debug_view";

@@ -2,8 +2,8 @@
 
 use super::probe::Probe;
 use super::{
-    antialias, decisions, doctor, foveation, lattice, lens, matching, mathematics, noise, quads, sparse, state,
-    surfaces, upsampling, weighted,
+    antialias, decisions, demodulation, doctor, foveation, lattice, lens, matching, mathematics, noise, quads, sparse,
+    state, surfaces, upsampling, weighted,
 };
 pub use afterimage::shader::SHADERS;
 
@@ -29,7 +29,15 @@ pub const RUST_ONLY: &[(&str, &str)] = &[
 
 /// Every probe.
 pub fn probes() -> impl Iterator<Item = &'static Probe> {
-    let lists = [antialias::PROBES, decisions::PROBES, doctor::PROBES, foveation::PROBES, lattice::PROBES].into_iter();
+    let lists = [
+        demodulation::PROBES,
+        antialias::PROBES,
+        decisions::PROBES,
+        doctor::PROBES,
+        foveation::PROBES,
+        lattice::PROBES,
+    ]
+    .into_iter();
     let lists = lists.chain([lens::PROBES, matching::PROBES, mathematics::PROBES, noise::PROBES, quads::PROBES]);
     lists.chain([sparse::PROBES, state::PROBES, surfaces::PROBES, upsampling::PROBES, weighted::PROBES]).flatten()
 }

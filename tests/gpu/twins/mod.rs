@@ -6,6 +6,7 @@ mod bindings;
 mod composer;
 mod controls;
 mod decisions;
+mod demodulation;
 mod doctor;
 mod foveation;
 mod functions;

@@ -14,6 +14,8 @@ override EMISSIVE_TEXTURE: bool = true;
 override HAS_SUN: bool = true;
 // Alpha test instead of alpha to coverage, where pixels have one sample.
 override ALPHA_TEST: bool = false;
+// Albedo of surfaces instead of their color.
+override ALBEDO: bool = false;
 
 struct ColorVarying {
     @builtin(position) position: vec4f,
@@ -80,6 +82,21 @@ fn ambient_at(normal: vec3f) -> vec3f {
     let y = select(lights.ambient[3], lights.ambient[2], normal.y >= 0.0).xyz;
     let z = select(lights.ambient[5], lights.ambient[4], normal.z >= 0.0).xyz;
     return (x * share.x + y * share.y) + z * share.z;
+}
+
+// Share of uniform light from all sides that a surface returns towards the eye, by its diffuse lobe and its
+// reflections; not what shines through it, nor what it emits.
+fn albedo_of(l: Layers, cosine: f32) -> vec3f {
+    var albedo = l.diffuse * PI;
+    if LOBE_SPECULAR || LOBE_METAL {
+        let e = ggx_albedo(0u, cosine, ggx_mean_width(l.widths));
+        albedo += l.reflect * e.x + l.reflect_rise * e.y;
+    }
+    if LOBE_CLEARCOAT {
+        let e = ggx_albedo(0u, cosine, l.coat_width);
+        albedo += vec3f(l.coat * e.x + l.coat_rise * e.y);
+    }
+    return albedo;
 }
 
 struct Incoming {
@@ -192,6 +209,9 @@ fn shade(in: ColorVarying, @builtin(front_facing) front: bool) -> @location(0) v
     if LOBE_TRANSMISSION {
         let passed = clamp(surface.transmission * (1.0 - surface.metallic), 0.0, 1.0);
         through = passed * (1.0 - fresnel_dielectric(wo.z, max(surface.ior, 1.0))) * luma(clamp(base.xyz, vec3f(0.0), vec3f(1.0)));
+    }
+    if ALBEDO {
+        color = albedo_of(l, wo.z);
     }
     color = clamp(color, vec3f(0.0), vec3f(MAX_COLOR));
     if (material.flags & FLAG_BLEND) != 0u {

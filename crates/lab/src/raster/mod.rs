@@ -93,6 +93,8 @@ pub struct Raster {
     pipelines: Pipelines,
     /// Pipelines with one sample per pixel; none before the first planned frame.
     point_pipelines: OnceCell<ColorPipelines>,
+    /// Pipelines of albedo; none before the first frame that asks for it.
+    albedo_pipelines: OnceCell<ColorPipelines>,
     /// `None` before the first frame that draws to chosen quads.
     chunk_test: OnceCell<ChunkTest>,
     effects: Effects,
@@ -173,6 +175,7 @@ impl Raster {
             layouts,
             pipelines,
             point_pipelines: OnceCell::new(),
+            albedo_pipelines: OnceCell::new(),
             chunk_test: OnceCell::new(),
             effects,
             materials,

@@ -54,6 +54,22 @@ impl ColorPipelines {
     }
 
     pub fn new(device: &Device, layouts: &Layouts, effects: Effects, has_sun: bool, samples: u32) -> Self {
+        Self::of_kind(device, layouts, effects, has_sun, samples, false)
+    }
+
+    /// Pipelines that draw albedo instead of color, with one sample per pixel.
+    pub fn albedo(device: &Device, layouts: &Layouts, effects: Effects) -> Self {
+        Self::of_kind(device, layouts, effects, false, 1, true)
+    }
+
+    fn of_kind(
+        device: &Device,
+        layouts: &Layouts,
+        effects: Effects,
+        has_sun: bool,
+        samples: u32,
+        is_albedo: bool,
+    ) -> Self {
         let [color, sky] = ["color_pass", "sky_pass"].map(|name| shader(device, name));
         let mut shading = constants(
             effects,
@@ -67,6 +83,8 @@ impl ColorPipelines {
         );
         shading.extend(effects.lobe_constants());
         shading.push(("HAS_SUN", f64::from(u8::from(has_sun))));
+        let albedo = [("ALBEDO", f64::from(u8::from(is_albedo)))];
+        shading.extend(albedo);
         let mut tested = shading.clone();
         tested.push(("ALPHA_TEST", f64::from(u8::from(samples == 1))));
         let groups = [Some(&layouts.frame), Some(&layouts.material), Some(&layouts.lighting_maps)];
@@ -83,6 +101,7 @@ impl ColorPipelines {
         };
         let blend = Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING);
         let sky = Recipe {
+            constants: &albedo,
             depth: false,
             vertices: false,
             samples,

@@ -175,6 +175,27 @@ impl Raster {
         self.color_pass(encoder, target, point_depth, pipelines, &[section], &blended);
     }
 
+    /// Records the albedo of every pixel of the full-rate frame, with one sample at its centre, into the color of
+    /// `targets`: the share of uniform light that its surface returns, 0 in the sky. Blended surfaces have theirs by
+    /// their opacity.
+    pub fn record_albedo(
+        &mut self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        [view, previous]: [&View; 2],
+        targets: &FoveatedTargets,
+    ) {
+        self.upload(device, encoder);
+        let window = Window::full(view.geometry().size_px()).with_points();
+        let section = self.section(device, [view, previous], window);
+        let blended = self.back_to_front(device, view);
+        let FoveatedTargets { atlas: Targets { views: [color, ..], .. }, point_depth } = targets;
+        let new = || ColorPipelines::albedo(device, &self.layouts, self.effects);
+        let pipelines = self.albedo_pipelines.get_or_init(new);
+        let target = target(color, None, LoadOp::Clear(Color::BLACK));
+        self.color_pass(encoder, target, point_depth, pipelines, &[section], &blended);
+    }
+
     fn point_pipelines(&self, device: &Device) -> &ColorPipelines {
         let new = || ColorPipelines::new(device, &self.layouts, self.effects, self.has_sun, 1);
         self.point_pipelines.get_or_init(new)

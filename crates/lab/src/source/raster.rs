@@ -289,6 +289,21 @@ impl RasterSource {
         self.of.views(index).0.map(|view| if is_jittered { view.jittered(jitter_px) } else { view })
     }
 
+    /// Albedo of every pixel of frame `index`, which was rendered last, read back ([`Raster::record_albedo`]).
+    ///
+    /// # Errors
+    /// [`Device`](InputError::Device) if the device is lost.
+    pub fn albedo(&mut self, index: u64, jitter_px: [f32; 2]) -> Result<Image<[f32; 3]>, InputError> {
+        let [view, previous] = self.jittered_views(index, jitter_px);
+        let (color, _) = self.submit_timed(|source, encoder| {
+            let device = &source.device.device;
+            let targets = fitted(&mut source.points, device, source.of.info().size);
+            source.raster.record_albedo(device, encoder, [&view, &previous], targets);
+            targets.atlas.color.clone()
+        })?;
+        Ok(read_color(&self.device, &color))
+    }
+
     fn record_quad_views(
         &mut self,
         encoder: &mut CommandEncoder,

@@ -12,6 +12,10 @@ use afterimage::{Gaze, ViewGeometry};
 pub const SIZE_PX: [u32; 2] = [3840, 2160];
 /// Their horizontal field of view.
 const FOV_DEG: f32 = 70.0;
+/// Of frames that have albedo: "quads smr antialias" with it.
+const ALBEDO: &str = "quads smr antialias albedo";
+/// Bytes a pixel of albedo: of an input of 8 bits a channel, and of history, read and written.
+const ALBEDO_BYTES: u32 = 4 + 4 + 4;
 /// Passes that choose the quads to shade.
 const PLAN: [&str; 5] =
     ["quad_key_pass", "quad_threshold_pass", "quad_mask_pass", "quad_around_pass", "quad_octants_pass"];
@@ -65,6 +69,7 @@ pub fn methods() -> Result<Vec<MethodPasses>> {
         ("smr noisy", noisy(full(MethodKind::Smr))),
         ("quads smr", quads(MethodKind::Smr)),
         ("quads smr antialias", antialias(quads(MethodKind::Smr))),
+        (ALBEDO, antialias(quads(MethodKind::Smr))),
         ("quads smr noisy", noisy(quads(MethodKind::Smr))),
         ("quads taau", quads(MethodKind::Taau)),
         ("quads wrs", quads(MethodKind::Wrs)),
@@ -78,13 +83,16 @@ pub fn methods() -> Result<Vec<MethodPasses>> {
 fn method(name: &'static str, settings: &Settings) -> Result<MethodPasses> {
     // A device without hardware takes all shaders, and does nothing with them.
     let (device, _queue) = Device::noop(&DeviceDescriptor::default());
-    let desc = ContextDesc { settings: *settings, keep_alpha: false, ..ContextDesc::new([64, 64]) };
+    let has_albedo = name == ALBEDO;
+    let desc = ContextDesc { settings: *settings, keep_alpha: false, has_albedo, ..ContextDesc::new([64, 64]) };
     let post = Afterimage::new(&device, &desc, TextureFormat::Rgba16Float)?;
-    let [color, depth, motion] = [TextureFormat::Rgba16Float, TextureFormat::R32Float, TextureFormat::Rg32Float]
-        .map(|format| device.create_texture(&texture(desc.size_px, format)));
+    let image = |format| device.create_texture(&texture(desc.size_px, format));
+    let [color, depth] = [TextureFormat::Rgba16Float, TextureFormat::R32Float].map(image);
+    let [motion, albedo] = [TextureFormat::Rg32Float, TextureFormat::Rgba8Unorm].map(image);
     let views = [ViewFrame::new(ViewGeometry::flat(desc.size_px, FOV_DEG)?, Gaze::Lost)];
     let (depth, motion) = (Some((&depth).into()), Some((&motion).into()));
-    post.prewarm(&device, &Frame { depth, motion, ..Frame::new(&color, &views, 0) }, &color);
+    let albedo = has_albedo.then_some((&albedo).into());
+    post.prewarm(&device, &Frame { depth, motion, albedo, ..Frame::new(&color, &views, 0) }, &color);
     let pass = |(module, overrides): (&'static str, Vec<_>)| -> Result<Pass> {
         if name == "copy" {
             let text = WITH_COPY.compose("copy_pass").source;
@@ -114,7 +122,8 @@ fn method(name: &'static str, settings: &Settings) -> Result<MethodPasses> {
     let mut passes: Vec<Pass> = post.pipelines().into_iter().filter(usual).map(pass).collect::<Result<_>>()?;
     // The table of compiled pipelines has no order of its own.
     passes.sort_by(|a, b| a.name.cmp(&b.name));
-    Ok(MethodPasses { name, bytes: settings.traffic_bytes_per_pixel([true, true, false]), passes })
+    let albedo_bytes = if has_albedo { ALBEDO_BYTES } else { 0 };
+    Ok(MethodPasses { name, bytes: settings.traffic_bytes_per_pixel([true, true, false]) + albedo_bytes, passes })
 }
 
 fn texture([width, height]: [u32; 2], format: TextureFormat) -> TextureDescriptor<'static> {
@@ -195,6 +204,8 @@ fn loops(module: &str, settings: &Settings) -> &'static [&'static str] {
         "quad_light_pass" if settings.noisy => &["four", "four", "quads"],
         "quad_light_pass" => &["four", "four", "quads", "quads relit"],
         "quad_pass" if is_antialiased(settings) => &["four", "near", "slope", "around"],
+        // The loop over the albedos beside a pixel is unrolled.
+        "quad_albedo_pass" => &["four", "near", "slope", "around"],
         "quad_pass" if settings.noisy => &["four", "twelve", "slope", "four"],
         "quad_pass" => &["four", "slope", "four"],
         "wrs_quad_pass" => &["four"],

@@ -19,7 +19,7 @@ struct Shader {
 impl Shader {
     /// First paragraph of the comment at the top.
     fn header(&self) -> String {
-        let lines = self.text.lines().skip_while(|l| l.starts_with("//#use "));
+        let lines = self.text.lines().skip_while(|l| l.starts_with("//#"));
         let comment: Vec<&str> = lines.map_while(|l| l.strip_prefix("//")).map(str::trim).collect();
         comment.split(|l| l.is_empty()).next().unwrap_or(&[]).join(" ")
     }
@@ -158,7 +158,7 @@ fn tables_of_shaders_are_those_of_the_sources() {
 
 #[test]
 fn a_table_follows_its_sources() {
-    let text = "//#use a\n//#use b\n// Blends two levels: linearly. CPU twin:\n// `src/mix.rs`, which counts.\n\noverride AXIS: u32 = 0u;\n\
+    let text = "//#use a\n//#instead b c\n// Blends two levels: linearly. CPU twin:\n// `src/mix.rs`, which counts.\n\noverride AXIS: u32 = 0u;\n\
         @group(0) @binding(1) var full: texture_2d<f32>;\n@group(2) @binding(0) var<storage, read> plan: array<u32>;\n\
         // a fn of c\nfn first(x: f32) {\n}\n@compute @workgroup_size(64)\nfn main() {\n}\n\
         @fragment fn shade() {\n}\nfn second() {}\n";

@@ -4,6 +4,7 @@ use super::rig::{FAST, is_smooth};
 use crate::given::{builtin, device};
 use afterimage::Image;
 use afterimage_lab::frame::{Content, ShadedColor, ShadingRequest};
+use afterimage_lab::scene::Material;
 use afterimage_lab::source::{FrameRequest, FrameSource, RasterSource, SceneCamera, Wanted};
 
 /// Odd sides: the last quads lie half beyond the edges.
@@ -88,5 +89,43 @@ fn one_pixel_of_each_quad_is_drawn_at_half_the_size() {
             println!("{name}, {place:?}: {db:.1} dB of {count} pixels, planted {planted:.1} dB");
             assert!(db > 35.0 && planted < db - 6.0, "{name}");
         }
+    }
+}
+
+/// In white light from all sides, the color of a surface is its albedo: of a rough one, of metal, and below a coat. The
+/// sky has none.
+#[test]
+fn albedo_is_the_color_in_white_light_from_all_sides() {
+    let Some(device) = device() else { return };
+    let plain = super::noise::noise();
+    let material = || plain.materials[0].clone();
+    let metal = Material { metallic: 0.7, roughness: 0.3, ..material() };
+    let coated = Material { clearcoat: 0.5, clearcoat_roughness: 0.2, ..material() };
+    for (name, material) in [("rough", material()), ("metal", metal), ("coated", coated)] {
+        let mut scene = plain.clone();
+        scene.materials = vec![material];
+        let camera = SceneCamera::choose(&scene, Some("framing"), SIZE, None).unwrap();
+        let mut source = RasterSource::new(device.clone(), scene, camera, None, FAST).unwrap();
+        let jitter_px = [0.3, -0.45];
+        let request = FrameRequest { jitter_px: Some(jitter_px), ..FrameRequest::full_rate(3) };
+        let frame = source.render(&request).unwrap();
+        let Content::Jittered(full) = &frame.content else { panic!("one sample a pixel") };
+        let depth = full.depth.as_ref().unwrap();
+        let [albedo, planted] = [jitter_px, [0.0; 2]].map(|jitter_px| source.albedo(3, jitter_px).unwrap());
+        // The largest differences from the color, and from that with a planted jitter; number of surfaces and sky.
+        let (mut off, mut counts) = ([0.0_f32; 2], [0; 2]);
+        for [x, y] in (0..SIZE[1] as usize).flat_map(|y| (0..SIZE[0] as usize).map(move |x| [x, y])) {
+            let is_sky = depth.at(x, y) > 1e9;
+            counts[usize::from(is_sky)] += 1;
+            let expected = if is_sky { [0.0; 3] } else { full.color.at(x, y) };
+            for (off, found) in off.iter_mut().zip([&albedo, &planted]) {
+                let found = found.at(x, y);
+                *off = (0..3).map(|i| (found[i] - expected[i]).abs()).fold(*off, f32::max);
+            }
+        }
+        assert!(counts.iter().all(|&count| count > 500), "{name}: {counts:?} pixels of surfaces and sky");
+        // Half floats have 11 significant bits.
+        assert!(off[0] < 1.0 / 512.0, "{name}: off by {}", off[0]);
+        assert!(off[1] > 0.05, "{name}: a planted jitter is off by {} only", off[1]);
     }
 }
