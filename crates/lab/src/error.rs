@@ -1,6 +1,12 @@
 //! Errors of inputs, split by who must act. Each reads as one line: `subject: problem; remedy`.
 
+use afterimage::FrameError;
 pub use afterimage_eval::error::{Bound, Exceeded, InputError, Message};
+
+/// The error of a renderer that has lost its device.
+pub fn device_lost(name: &str, lost: &FrameError) -> InputError {
+    InputError::device(name, lost.to_string(), "start again, or render on the CPU where that is possible")
+}
 
 /// A message of another crate on one line.
 pub(crate) fn one_line(message: &str) -> String {

@@ -1,12 +1,11 @@
 //! Frame sources, renderers, scanpaths and metrics to test and measure [`afterimage`].
 //!
 //! - [`source`]: stills, EXR sequences, analytic scenes and rendered scenes, all as streams of [`frame::SourceFrame`]s.
-//! - [`scene`]: glTF and built-in scenes. [`raster`]: a rasteriser for them. [`trace`]: a path tracer, foveated or at
-//!   full rate.
+//! - [`scene`]: glTF and built-in scenes, and the [`view`] of a camera. [`raster`]: a rasteriser for them. [`rays`]:
+//!   what rays meet in them.
 //! - [`scanpath`]: recorded and synthetic gaze.
 //! - [`quad_views`]: foveation as headset runtimes draw it, for comparison.
 //! - [`pipeline`]: foveates frames and runs the methods on them. [`metric`]: image quality of the output.
-//! - [`measure`]: times of path-traced frames.
 //! - [`device`]: a graphics device without a window. [`error`]: errors of inputs.
 
 extern crate wgpu_30 as wgpu;
@@ -18,11 +17,11 @@ pub mod error;
 mod file_kind;
 pub mod frame;
 pub mod kernel;
-pub mod measure;
 pub mod pipeline;
 pub mod raster;
+pub mod rays;
 pub mod scene;
 pub mod self_test;
 pub mod shader;
 pub mod source;
-pub mod trace;
+pub mod view;

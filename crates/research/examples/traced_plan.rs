@@ -17,11 +17,10 @@ use afterimage_lab::device::Backend;
 use afterimage_lab::frame::{Content, RenderedFrame, ShadedColor, ShadingRequest};
 use afterimage_lab::metric::{Flip, References, Scorer, Tracker, encode};
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, read_csv};
-use afterimage_lab::source::{
-    FrameRequest, FrameSource, ReadLimits, SceneOptions, TracedSamples, TracedSource, Wanted,
-};
-use afterimage_lab::trace::sampling::{Acuity, Regions, Sampling};
-use afterimage_lab::trace::settings::TraceSettings;
+use afterimage_lab::source::{FrameRequest, FrameSource, ReadLimits, SceneOptions, Wanted};
+use afterimage_trace::sampling::{Acuity, Regions, Sampling};
+use afterimage_trace::settings::TraceSettings;
+use afterimage_trace::{TracedSamples, TracedSource};
 
 /// Rows of the table.
 const ROWS: &str = "plan:5.2,5.2,2,2,0.025;even:8.6,8.6,2,2,0;none:5.2,5.2,4,8,0.14;acuity:0.07;acuity:0.16;regions:2";

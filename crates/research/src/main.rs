@@ -16,8 +16,8 @@ mod saved_time;
 mod wrs_readings;
 mod wrs_table;
 
-use afterimage_lab::measure::ROUNDS;
 use afterimage_program::failure::Failure;
+use afterimage_trace::measure::ROUNDS;
 use clap::{Parser, Subcommand};
 use options::{EffectsArgs, TracedArgs, WrsTableArgs};
 use std::process::ExitCode;

@@ -8,11 +8,11 @@ use crate::options::TracedArgs;
 use afterimage::ViewGeometry;
 use afterimage_eval::output::write_json;
 use afterimage_lab::device::{Backend, NO_ADAPTER};
-use afterimage_lab::measure::{Pattern, PatternReport, TracedView, UNIFORM_EVERY, UNIFORM_SAMPLES, measure, regions};
 use afterimage_lab::pipeline::{Processor, ProcessorInfo};
-use afterimage_lab::trace::sampling::{Layers, Regions, Sampling};
-use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};
 use afterimage_program::failure::{Failure, warn};
+use afterimage_trace::measure::{Pattern, PatternReport, TracedView, UNIFORM_EVERY, UNIFORM_SAMPLES, measure, regions};
+use afterimage_trace::sampling::{Layers, Regions, Sampling};
+use afterimage_trace::settings::{Bsdf, Integrator, TraceSettings};
 use serde::Serialize;
 
 /// The display of Mohanto et al. 2023: size in pixels and in centimeters, and viewing distance.

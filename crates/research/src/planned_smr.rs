@@ -7,11 +7,11 @@ use afterimage_lab::clock::Elapsed;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::{Shaded, ShadedColor, ShadingRequest};
-use afterimage_lab::measure::{Foveated, FrameTime, Pattern, TracedView};
 use afterimage_lab::metric::{Flip, encode, psnr_db};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
-use afterimage_lab::trace::Tracer;
 use afterimage_program::failure::Failure;
+use afterimage_trace::Tracer;
+use afterimage_trace::measure::{Foveated, FrameTime, Pattern, TracedView};
 use serde::Serialize;
 use std::collections::BTreeMap;
 

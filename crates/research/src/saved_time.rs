@@ -5,10 +5,10 @@
 
 use crate::options::TracedArgs;
 use afterimage_eval::output::write_json;
-use afterimage_lab::measure::{PatternReport, TracedView, measure, one_path, regions};
 use afterimage_lab::pipeline::{Processor, ProcessorInfo};
-use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_program::failure::{Failure, warn};
+use afterimage_trace::measure::{PatternReport, TracedView, measure, one_path, regions};
+use afterimage_trace::settings::TraceSettings;
 use serde::Serialize;
 
 #[derive(Serialize)]

@@ -11,7 +11,7 @@ const FLAG_BLEND: u32 = 2u;
 const FLAG_DOUBLE_SIDED: u32 = 4u;
 const FLAG_VOLUME: u32 = 8u;
 
-// MaterialRecord in src/trace/shading_records.rs, and the coordinates of the textures.
+// MaterialRecord in src/scene/shading_records.rs, and the coordinates of the textures.
 struct RasterMaterial {
     base_color: vec3f,
     opacity: f32,

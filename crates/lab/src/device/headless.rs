@@ -180,7 +180,7 @@ impl Headless {
     }
 
     /// Waits for submitted work and reads a buffer with usage `COPY_SRC`.
-    pub(crate) fn read_buffer(&self, from: &Buffer) -> Vec<u8> {
+    pub fn read_buffer(&self, from: &Buffer) -> Vec<u8> {
         self.read_back(from.size(), |encoder, to| encoder.copy_buffer_to_buffer(from, 0, to, 0, from.size()))
     }
 

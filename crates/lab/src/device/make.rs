@@ -6,7 +6,7 @@ use wgpu::{
 };
 
 /// A 2D texture of `size` texels with one layer, mip level and sample.
-pub(crate) fn texture_desc(
+pub fn texture_desc(
     label: &str,
     [width, height]: [u32; 2],
     format: TextureFormat,
@@ -25,12 +25,12 @@ pub(crate) fn texture_desc(
 }
 
 /// A buffer of `size` zero bytes.
-pub(crate) fn empty_buffer(device: &Device, label: &str, size: u64, usage: BufferUsages) -> Buffer {
+pub fn empty_buffer(device: &Device, label: &str, size: u64, usage: BufferUsages) -> Buffer {
     device.create_buffer(&BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
 }
 
 /// Binds `resources` to bindings 0, 1, 2 and so on.
-pub(crate) fn bind_group<'a>(
+pub fn bind_group<'a>(
     device: &Device,
     label: &str,
     layout: &BindGroupLayout,

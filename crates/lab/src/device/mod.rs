@@ -10,7 +10,7 @@ mod timestamps;
 pub use bandwidth::copy_ms_per_byte;
 pub use clock::{PassClock, SpanClock};
 pub use headless::Headless;
-pub(crate) use make::{bind_group, empty_buffer, texture_desc};
+pub use make::{bind_group, empty_buffer, texture_desc};
 pub use mapped::mapped;
 pub(crate) use mapped::wait_mapped;
 pub use timestamps::DeviceClock;

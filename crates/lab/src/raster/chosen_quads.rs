@@ -5,7 +5,7 @@ use super::pixels::Pixels;
 use super::window::DrawCall;
 use crate::device::{bind_group, empty_buffer};
 use crate::shader::SHADERS;
-use crate::trace::view::View;
+use crate::view::View;
 use afterimage::internal::{ComputeShader, filled};
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;

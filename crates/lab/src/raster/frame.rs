@@ -2,7 +2,7 @@
 
 use super::pixels::Pixels;
 use super::window::Window;
-use crate::trace::view::View;
+use crate::view::View;
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 

@@ -2,8 +2,8 @@
 
 use super::bounce;
 use super::lights::{LightRecord, MAX_LIGHTS, panels, punctual};
+use crate::scene::effects::{Effect, Effects};
 use crate::scene::{Environment, PunctualKind, PunctualLight, Scene};
-use crate::trace::effects::{Effect, Effects};
 use afterimage::Image;
 use afterimage::kernel::color::luma;
 use bytemuck::{Pod, Zeroable};

@@ -1,7 +1,7 @@
 //! Lights in the shader's layout: punctual lights and emissive panels.
 
+use crate::scene::shading_records::PunctualRecord;
 use crate::scene::{Material, PunctualLight, Triangles};
-use crate::trace::shading_records::PunctualRecord;
 use afterimage::kernel::color::luma;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};

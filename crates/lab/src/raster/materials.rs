@@ -3,8 +3,8 @@
 use super::mipmaps::levels;
 use super::pipelines::{Layouts, SAMPLERS, SLOTS};
 use crate::device::{bind_group, empty_buffer, texture_desc};
+use crate::scene::shading_records::MaterialRecord;
 use crate::scene::{Coordinates, Material, Scene, Texture, TextureRef, Wrap};
-use crate::trace::shading_records::MaterialRecord;
 use afterimage::Image;
 use std::collections::HashMap;
 use wgpu::{

@@ -24,7 +24,7 @@
 //! - **Alpha.** MASK: alpha test against the cutoff; in the color pass, alpha to coverage smooths the edge. BLEND and
 //!   transmissive surfaces: drawn after the sky, back to front by material and by triangle within a material, without
 //!   writing the color pass' depth. Depth and motion include them where they are more than half opaque, as in
-//!   [`Surfaces`](crate::trace::surfaces::Surfaces); transmissive surfaces count as opaque.
+//!   `Surfaces` of `afterimage-trace`; transmissive surfaces count as opaque.
 //! - **Light.** Punctual lights and the sun as in the tracer, up to 64; only the sun casts shadows. Emissive triangles
 //!   become one disk per material and direction, at most 32, without shadows, in their pose at time 0. The sky is not
 //!   occluded: irradiance from six faces, reflections from a mip level by roughness. In scenes without a sky, indirect
@@ -57,8 +57,8 @@ pub use window::AtlasLayout;
 use crate::device::{bind_group, empty_buffer};
 use crate::error::{Bound, Exceeded, InputError};
 use crate::kernel::albedo::AlbedoTables;
+use crate::scene::effects::Effects;
 use crate::scene::{Environment, Pose, PunctualLight, Scene};
-use crate::trace::effects::Effects;
 use afterimage::kernel::pack::half_bits;
 use bytemuck::Zeroable;
 use chosen_quads::ChunkTest;

@@ -1,8 +1,8 @@
 //! Render pipelines and bind group layouts.
 
 use super::vertices::{AlphaKind, LAYOUTS};
+use crate::scene::effects::{Effect, Effects};
 use crate::shader::SHADERS;
-use crate::trace::effects::{Effect, Effects};
 use wgpu::{
     BindGroupLayout, BindGroupLayoutEntry, BindingType, BlendState, ColorTargetState, ColorWrites, CompareFunction,
     DepthBiasState, DepthStencilState, Device, RenderPipeline, ShaderModule, ShaderStages, TextureFormat,

@@ -1,6 +1,6 @@
 //! Projection between directions and pixels.
 
-use crate::trace::view::View;
+use crate::view::View;
 use glam::DVec3;
 
 /// Projection in f64: rows from direction to homogeneous pixels, and columns from pixels to direction.

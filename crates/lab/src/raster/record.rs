@@ -9,7 +9,7 @@ use super::vertices::{AlphaKind, STRIDE};
 use super::window::{DrawCall, Frustum, Window};
 use crate::device::bind_group;
 use crate::quad_views::QuadViews;
-use crate::trace::view::View;
+use crate::view::View;
 use afterimage::internal::filled;
 use glam::DVec3;
 use std::ops::Range;

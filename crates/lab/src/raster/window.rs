@@ -3,7 +3,7 @@
 use super::pixels::Pixels;
 use super::vertices::AlphaKind;
 use crate::quad_views::{QuadView, QuadViews};
-use crate::trace::view::View;
+use crate::view::View;
 use glam::DVec3;
 use std::ops::Range;
 

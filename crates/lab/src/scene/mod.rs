@@ -37,6 +37,7 @@ pub mod camera_file;
 mod camera_forms;
 pub mod cameras;
 mod colmap;
+pub mod effects;
 mod geometry;
 mod gltf_file;
 pub mod light;
@@ -45,6 +46,7 @@ pub mod material;
 mod model;
 mod open;
 mod pose;
+pub mod shading_records;
 pub mod texture;
 pub mod triangles;
 

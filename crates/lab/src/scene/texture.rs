@@ -31,9 +31,9 @@ pub struct Coordinates {
 const MAX_COORDINATE: f32 = 1e9;
 
 impl Coordinates {
-    /// The transform of coordinates of its set. Twin: `coordinates_of` in `shaders/trace/texture.wgsl`.
+    /// The transform of coordinates of its set. Twin: `coordinates_of` in `trace/shaders/trace/texture.wgsl`.
     #[inline(always)]
-    pub(crate) fn of(&self, uv: Vec2) -> Vec2 {
+    pub fn of(&self, uv: Vec2) -> Vec2 {
         let row = |r: [f32; 3]| ((r[0] * uv.x + r[2]) + r[1] * uv.y).clamp(-MAX_COORDINATE, MAX_COORDINATE);
         Vec2::new(row(self.rows[0]), row(self.rows[1]))
     }

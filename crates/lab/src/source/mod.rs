@@ -11,8 +11,6 @@ pub mod raster;
 pub mod scene_camera;
 pub mod sequence;
 pub mod still;
-pub mod synthetic_head;
-pub mod traced;
 mod video;
 pub mod viewed_scene;
 pub mod y4m;
@@ -30,8 +28,6 @@ pub use raster::RasterSource;
 pub use scene_camera::SceneCamera;
 pub use sequence::SequenceSource;
 pub use still::StillSource;
-pub use synthetic_head::head_in_scene;
-pub use traced::{TracedSamples, TracedSource};
 pub use viewed_scene::{Light, SceneChoice, ViewedScene};
 
 /// View parameters of scenes. Files of frames state their own.

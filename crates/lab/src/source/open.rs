@@ -5,10 +5,10 @@ use super::exr_file::ChannelNames;
 use super::{FrameSource, ReadLimits, SceneOptions, SequenceSource, StillSource};
 use crate::error::InputError;
 use crate::file_kind::{folder_of_pattern, kind, other_kind};
-use afterimage::FrameError;
 use std::path::Path;
 
-/// Whether `input` names a scene, which needs a renderer (`RasterSource`, `TracedSource`), and not a file of frames.
+/// Whether `input` names a scene, which needs a renderer (`RasterSource`, or `TracedSource` of `afterimage-trace`), and
+/// not a file of frames.
 pub fn is_scene(input: &str) -> bool {
     input.starts_with("builtin:") || matches!(kind(Path::new(input)).as_str(), "gltf" | "glb")
 }
@@ -99,9 +99,4 @@ pub(super) fn check_size(subject: &str, [w, h]: [u32; 2], limits: &ReadLimits) -
         format!("{w}x{h} pixels are above the limit of {} million", limits.max_pixels / 1_000_000),
         "choose a smaller size, or raise the limit",
     ))
-}
-
-/// The error of a renderer that has lost its device.
-pub(super) fn device_lost(name: &str, lost: &FrameError) -> InputError {
-    InputError::device(name, lost.to_string(), "start again, or render on the CPU where that is possible")
 }

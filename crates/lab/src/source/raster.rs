@@ -1,13 +1,12 @@
 //! Frames of a scene from the rasteriser.
 
 use super::CameraPose;
-use super::open::device_lost;
 use super::scene_camera::SceneCamera;
 use super::viewed_scene::{SceneChoice, ViewedScene};
 use super::{FrameRequest, FrameSource, ReadLimits, SceneOptions, SourceInfo, Wanted, reference_offsets_px};
 use crate::clock::{Elapsed, Stopwatch};
 use crate::device::{Headless, PassClock};
-use crate::error::InputError;
+use crate::error::{InputError, device_lost};
 use crate::frame::{
     ComposedFrame, DeviceFrame, DeviceHandle, OnDevice, RenderedFrame, Shaded, ShadedColor, ShadingRequest, SourceFrame,
 };
@@ -16,7 +15,7 @@ use crate::raster::{
     AtlasLayout, Composer, FoveatedTargets, Raster, RasterSettings, Targets, read_color, read_distance,
 };
 use crate::scene::Scene;
-use crate::trace::view::View;
+use crate::view::View;
 use afterimage::Image;
 use afterimage::internal::filled;
 use glam::DMat4;

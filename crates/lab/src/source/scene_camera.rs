@@ -4,7 +4,7 @@ use super::CameraPose;
 use crate::error::InputError;
 use crate::scene::camera_file::CameraFile;
 use crate::scene::{Camera, Scene, SceneLimits};
-use crate::trace::view::View;
+use crate::view::View;
 use afterimage::ViewGeometry;
 use afterimage_eval::scanpath::HeadPath;
 use afterimage_eval::source::gait::Head;

@@ -3,9 +3,9 @@
 use super::open::check_size;
 use super::{ReadLimits, SceneCamera, SceneOptions, SourceInfo};
 use crate::error::InputError;
+use crate::scene::effects::Effects;
 use crate::scene::{Environment, Scene, SceneLimits};
-use crate::trace::view::View;
-use crate::trace::world::light_if_dark;
+use crate::view::View;
 use afterimage::ViewGeometry;
 use afterimage_eval::scanpath::HeadPath;
 use std::sync::Arc;
@@ -138,5 +138,15 @@ impl ViewedScene {
         let both = [index, index.saturating_sub(1)];
         let times = both.map(|i| self.time_s(i));
         ([0, 1].map(|i| self.camera.view(&self.scene, both[i], times[i])), times)
+    }
+}
+
+/// Sky radiance of scenes without light.
+const SOFT_WHITE: [f32; 3] = [1.0; 3];
+
+/// Adds a constant white sky to a scene without any light.
+fn light_if_dark(scene: &mut Scene) {
+    if !Effects::needed(scene).has_light() {
+        scene.environment = Environment::Constant(SOFT_WHITE);
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::roomy::roomy_device;
 use crate::shared_data::shared_data;
-use afterimage_lab::device::{Backend, Headless};
+use afterimage_lab::device::Headless;
 use afterimage_lab::scene::{Scene, SceneLimits};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
@@ -11,11 +11,6 @@ use std::sync::{Arc, OnceLock};
 pub fn device() -> Option<Arc<Headless>> {
     static DEVICE: OnceLock<Option<Arc<Headless>>> = OnceLock::new();
     DEVICE.get_or_init(roomy_device).clone()
-}
-
-/// The CPU, and the device if there is one.
-pub fn backends() -> Vec<Backend> {
-    std::iter::once(Backend::Cpu).chain(device().map(Backend::Gpu)).collect()
 }
 
 pub fn open(path: &Path) -> Scene {

@@ -1,4 +1,4 @@
-//! Scenes, and what renders them: glTF files, the rasteriser, the path tracer and its parts.
+//! Scenes, and what renders them: glTF files, rays, scattering, the rasteriser.
 
 #[path = "../common/hostile.rs"]
 mod hostile;
@@ -6,11 +6,11 @@ mod hostile;
 mod roomy;
 #[path = "../common/shared_data.rs"]
 mod shared_data;
+#[path = "../common/sound_scene.rs"]
+mod sound_scene;
 
 mod given;
 mod raster;
-mod sampling;
 mod scattering;
 mod scene_files;
-mod trace;
 mod traversal;

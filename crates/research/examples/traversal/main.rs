@@ -9,11 +9,11 @@ mod rays;
 
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::device::Headless;
+use afterimage_lab::rays::{Bvh, Geometry, Ray};
 use afterimage_lab::scene::Triangles;
-use afterimage_lab::trace::gpu::ray_lists::{GpuRays, HitQuery};
-use afterimage_lab::trace::gpu::scene_buffer::{GpuSceneBuffer, Storage};
-use afterimage_lab::trace::scene_buffer::{SceneBuffer, SceneBufferBuilder};
-use afterimage_lab::trace::{Bvh, Geometry, Ray};
+use afterimage_trace::gpu::ray_lists::{GpuRays, HitQuery};
+use afterimage_trace::gpu::scene_buffer::{GpuSceneBuffer, Storage};
+use afterimage_trace::scene_buffer::{SceneBuffer, SceneBufferBuilder};
 use glam::{Vec3, vec3};
 use obvhs::BvhBuildParams;
 use rays::{Obvhs, bounce_rays, closest, cpu_ms, occluded, primary_rays};

@@ -1,8 +1,8 @@
 //! Traversal cost: ray rates on the CPU against `obvhs`' own traversal, and build times.
 
 use afterimage_lab::clock::Stopwatch;
+use afterimage_lab::rays::{Bvh, Geometry, Hit, Ray};
 use afterimage_lab::scene::Triangles;
-use afterimage_lab::trace::{Bvh, Geometry, Hit, Ray};
 use glam::{Vec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::cwbvh::CwBvh;

@@ -1,7 +1,7 @@
 //! Removal of an effect's source from the kernels, to measure the cost of an effect that is compiled in but switched
 //! off.
 
-use afterimage_lab::trace::effects::Effect;
+use afterimage_lab::scene::effects::Effect;
 
 /// Edits that remove an effect's source.
 pub struct Removal {

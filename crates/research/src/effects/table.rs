@@ -2,7 +2,7 @@
 
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::pipeline::ProcessorInfo;
-use afterimage_lab::trace::effects::Effect;
+use afterimage_lab::scene::effects::Effect;
 use afterimage_lab::whole_file::write_whole;
 use afterimage_program::failure::Failure;
 use serde::Serialize;

@@ -1,8 +1,8 @@
 //! Sampling patterns with equal numbers of samples.
 
 use afterimage::ViewGeometry;
-use afterimage_lab::trace::sampling::{Acuity, Layers, Regions, Sampling};
 use afterimage_program::failure::Failure;
+use afterimage_trace::sampling::{Acuity, Layers, Regions, Sampling};
 
 /// Largest relative difference between the numbers of samples.
 const TOLERANCE: f64 = 0.02;

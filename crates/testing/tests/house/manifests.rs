@@ -5,8 +5,16 @@ use std::collections::BTreeSet;
 use toml::{Table, Value};
 
 /// Folders of published packages.
-const PUBLISHED: [&str; 7] =
-    ["", "crates/eval/", "crates/lab/", "crates/metric/", "crates/openxr/", "crates/program/", "crates/tool/"];
+const PUBLISHED: [&str; 8] = [
+    "",
+    "crates/eval/",
+    "crates/lab/",
+    "crates/metric/",
+    "crates/openxr/",
+    "crates/program/",
+    "crates/tool/",
+    "crates/trace/",
+];
 
 /// Packages for engines, which have one of several versions of wgpu. The others are on the newest.
 const FOR_ENGINES: [&str; 2] = ["", "crates/openxr/"];

@@ -5,8 +5,15 @@ use super::uses::{Graph, graph};
 use std::collections::BTreeSet;
 
 /// Folders of crates.
-const CRATES: [&str; 6] =
-    ["src/", "crates/eval/src/", "crates/lab/src/", "crates/tool/src/", "crates/bevy/src/", "crates/research/src/"];
+const CRATES: [&str; 7] = [
+    "src/",
+    "crates/eval/src/",
+    "crates/lab/src/",
+    "crates/trace/src/",
+    "crates/tool/src/",
+    "crates/bevy/src/",
+    "crates/research/src/",
+];
 
 /// Subcommands and the options of their parts.
 const OPTIONS: &str = "A subcommand's file begins with its options, as `--help` does, and its parts read them.";

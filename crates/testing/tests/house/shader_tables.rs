@@ -7,7 +7,7 @@
 use super::tree::{Tree, expect_none, read};
 use std::collections::BTreeSet;
 
-const PAGES: [&str; 2] = ["shaders/README.md", "crates/lab/shaders/README.md"];
+const PAGES: [&str; 3] = ["shaders/README.md", "crates/lab/shaders/README.md", "crates/trace/shaders/README.md"];
 const MARKER: &str = "<!-- generated: ";
 
 /// A WGSL file.

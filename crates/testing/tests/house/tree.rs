@@ -8,7 +8,7 @@ use std::path::Path;
 const SKIPPED: [&str; 5] = ["target", ".git", "out", "artifacts", "corpus"];
 
 /// Folders of the packages, relative to the root of the workspace, with a slash at the end unless empty.
-pub const PACKAGES: [&str; 9] = [
+pub const PACKAGES: [&str; 10] = [
     "",
     "crates/eval/",
     "crates/lab/",
@@ -18,6 +18,7 @@ pub const PACKAGES: [&str; 9] = [
     "crates/research/",
     "crates/testing/",
     "crates/tool/",
+    "crates/trace/",
 ];
 
 /// Packages in this repository that are workspaces of their own, and that have commands in documents.

@@ -118,7 +118,10 @@ fn options_in_literals(path: &str, source: &str) -> Vec<String> {
 fn the_lab_names_no_options_of_the_tool() {
     let tree = Tree::read();
     let of_eval = ["frame/", "metric/", "pipeline/", "scanpath/", "source/", "error.rs"];
-    let folders = of_eval.map(|part| format!("crates/eval/src/{part}")).into_iter().chain(["crates/lab/src/".into()]);
+    let folders = of_eval
+        .map(|part| format!("crates/eval/src/{part}"))
+        .into_iter()
+        .chain(["crates/lab/src/".into(), "crates/trace/src/".into()]);
     let files = folders.flat_map(|folder| tree.files(&folder, &[".rs"]).map(str::to_owned).collect::<Vec<_>>());
     let violations: Vec<_> = files.flat_map(|f| options_in_literals(&f, &read(&f))).collect();
     expect_none("options of the tool in the lab's string literals", &violations);

@@ -58,7 +58,10 @@ impl Held {
             }
             files
         };
-        ["tests", "crates/lab/tests", "crates/tool/tests"].into_iter().flat_map(in_crate).collect()
+        ["tests", "crates/lab/tests", "crates/trace/tests", "crates/tool/tests"]
+            .into_iter()
+            .flat_map(in_crate)
+            .collect()
     }
 }
 

@@ -4,7 +4,8 @@ use super::gaze::{DEFAULT_SECONDS, GazeArgs, fixed, synthetic_seed};
 use crate::failure::{Failure, warn};
 use afterimage_lab::scanpath::{HeadOptions, HeadPath};
 use afterimage_lab::scene::{Scene, SceneLimits};
-use afterimage_lab::source::{head_in_scene, is_scene};
+use afterimage_lab::source::is_scene;
+use afterimage_trace::head_in_scene;
 
 /// Smallest number of samples per second of a generated head.
 const LEAST_RATE_HZ: f64 = 500.0;

@@ -9,10 +9,9 @@ use afterimage_lab::device::{Backend, Headless, NO_ADAPTER};
 use afterimage_lab::scanpath::HeadPath;
 use afterimage_lab::scene::{PunctualKind, Scene};
 use afterimage_lab::source;
-use afterimage_lab::source::{
-    FrameSource, Light, ReadLimits, SceneChoice, SceneOptions, SourceInfo, TracedSamples, TracedSource, ViewedScene,
-};
-use afterimage_lab::trace::sampling::Sampling;
+use afterimage_lab::source::{FrameSource, Light, ReadLimits, SceneChoice, SceneOptions, SourceInfo, ViewedScene};
+use afterimage_trace::sampling::Sampling;
+use afterimage_trace::{TracedSamples, TracedSource};
 use clap::{Args, ValueEnum};
 
 /// Heading of these options in the help.

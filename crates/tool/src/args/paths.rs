@@ -2,8 +2,8 @@
 
 use super::{Named, by_name};
 use crate::failure::Failure;
-use afterimage_lab::trace::effects::{Effect, Effects};
-use afterimage_lab::trace::settings::{Bsdf, Integrator, MAX_DEPTH, TraceSettings};
+use afterimage_lab::scene::effects::{Effect, Effects};
+use afterimage_trace::settings::{Bsdf, Integrator, MAX_DEPTH, TraceSettings};
 use clap::Args;
 
 /// Heading of these options in the help.

@@ -4,7 +4,7 @@ use crate::args::gaze::GazeArgs;
 use crate::failure::Failure;
 use afterimage::ViewGeometry;
 use afterimage_lab::scanpath::HeadPath;
-use afterimage_lab::trace::sampling::{Acuity, Layers, Regions, Sampling};
+use afterimage_trace::sampling::{Acuity, Layers, Regions, Sampling};
 use clap::{Args, ValueEnum};
 
 /// Sampling pattern and gaze.

@@ -16,12 +16,12 @@ use afterimage_lab::scanpath::{FrameGaze, GazeLogOptions, GazeMap, parse_csv, pa
 use afterimage_lab::scene::camera_file::CameraFile;
 use afterimage_lab::scene::{Scene, SceneLimits};
 use afterimage_lab::source::{ReadLimits, SceneOptions};
-use afterimage_lab::trace::cpu::CpuTracer;
-use afterimage_lab::trace::film::Film;
-use afterimage_lab::trace::settings::TraceSettings;
-use afterimage_lab::trace::view::View;
-use afterimage_lab::trace::work::Spans;
-use afterimage_lab::trace::world::World;
+use afterimage_lab::view::View;
+use afterimage_trace::cpu::CpuTracer;
+use afterimage_trace::film::Film;
+use afterimage_trace::settings::TraceSettings;
+use afterimage_trace::work::Spans;
+use afterimage_trace::world::World;
 use std::fs;
 use std::path::PathBuf;
 

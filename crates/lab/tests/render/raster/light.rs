@@ -5,7 +5,7 @@ use crate::given::device;
 use crate::scene_files::builder::Gltf;
 use afterimage::ViewGeometry;
 use afterimage_lab::scene::Scene;
-use afterimage_lab::trace::view::View;
+use afterimage_lab::view::View;
 use glam::{DMat4, DVec3};
 use serde_json::{Value, json};
 use std::f32::consts::PI;

@@ -1,11 +1,9 @@
-//! The rasterizer: motion and depth against rays, colors against closed forms, and every available scene.
+//! The rasterizer: colors against closed forms, quad views and chosen pixels. What it shares with the path tracer is
+//! tested in `crates/trace/tests/render/raster/`.
 
-mod geometry;
-mod head;
 mod light;
 mod methods;
 mod noise;
 mod quad_views;
-mod real;
-pub mod rig;
+mod rig;
 mod shaded;

@@ -2,7 +2,7 @@
 
 use afterimage::ViewGeometry;
 use afterimage_lab::scene::{Environment, Material, Pose, Scene, Texture, TextureRef, Triangles, Wrap};
-use afterimage_lab::trace::view::View;
+use afterimage_lab::view::View;
 use glam::{DMat4, DQuat, DVec3, Vec2, vec3};
 
 /// A floor and a wall of random texels, whose mean is gray: a wrong level of detail shows.

@@ -9,7 +9,7 @@ use afterimage_lab::frame::OnDevice;
 use afterimage_lab::quad_views::{QuadView, QuadViewLayout, QuadViews};
 use afterimage_lab::raster::{AtlasLayout, FoveatedTargets};
 use afterimage_lab::source::{FrameRequest, FrameSource, RasterSource, SceneCamera, Wanted};
-use afterimage_lab::trace::view::View;
+use afterimage_lab::view::View;
 
 const SIZE: [u32; 2] = [320, 180];
 pub(super) const FOVEATION: fn() -> Foveation =

@@ -1,8 +1,5 @@
 //! glTF scenes: supported features, animation, and damaged files.
 
-#[path = "../../common/sound_scene.rs"]
-mod sound_scene;
-
 mod bad_input;
 pub mod builder;
 mod builtin;
@@ -18,13 +15,21 @@ mod posing;
 mod real;
 mod tangents;
 
+use crate::sound_scene::assert_sound;
 use afterimage_lab::error::InputError;
 use afterimage_lab::scene::{Scene, SceneLimits};
-use sound_scene::assert_sound;
+use builder::Gltf;
 use std::path::Path;
 
 fn open(path: &Path) -> Result<Scene, InputError> {
     Scene::open(path.to_str().unwrap(), &SceneLimits::default())
+}
+
+impl Gltf {
+    #[track_caller]
+    fn assert_refused(&self, words: &[&str]) {
+        assert_refused(&self.written().path, words);
+    }
 }
 
 /// The same of the default limits; the error names the file, too.

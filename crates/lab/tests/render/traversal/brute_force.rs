@@ -1,7 +1,7 @@
 //! Traversal finds exactly what a loop over all triangles finds, bit for bit.
 
 use super::scenes::{SOUPS, all, differing, nearest, no_rays, rays, soup};
-use afterimage_lab::trace::{Bvh, Geometry, Hit, Ray};
+use afterimage_lab::rays::{Bvh, Geometry, Hit, Ray};
 use afterimage_testing::Draws;
 use glam::Vec3;
 

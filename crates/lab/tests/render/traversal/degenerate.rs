@@ -1,8 +1,8 @@
 //! H81: hierarchies are built and traversed for any triangles.
 
 use super::scenes::{all, differing, point, rays, soup};
+use afterimage_lab::rays::{Bvh, Ray};
 use afterimage_lab::scene::Triangles;
-use afterimage_lab::trace::{Bvh, Ray};
 use afterimage_testing::{Draws, holds};
 use glam::{Vec3, vec3};
 

@@ -1,9 +1,8 @@
-//! Traversal: hierarchies against brute force, watertightness, degenerate input, CPU against GPU; hard cases H80, H81,
+//! Traversal: hierarchies against brute force, watertightness, degenerate input; hard cases H80, H81,
 //! H82.
 
 mod brute_force;
 mod degenerate;
-mod on_gpu;
 mod records;
 mod scenes;
 mod self_intersection;

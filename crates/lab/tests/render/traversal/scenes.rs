@@ -1,8 +1,8 @@
 //! Triangles and rays for the traversal tests.
 
 use afterimage_lab::kernel::triangle::{Intersection, intersect, shear};
+use afterimage_lab::rays::{Bvh, Hit, Ray};
 use afterimage_lab::scene::Triangles;
-use afterimage_lab::trace::{Bvh, Hit, Ray};
 use afterimage_testing::Draws;
 use glam::{Vec2, Vec3, Vec3A, Vec4, vec3};
 

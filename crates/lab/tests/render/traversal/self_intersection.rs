@@ -2,8 +2,8 @@
 
 use super::scenes::{all, direction, point, sphere};
 use afterimage_lab::kernel::triangle::{ORIGIN_OFFSET, magnitude, offset_ray, point_at};
+use afterimage_lab::rays::{Bvh, Ray};
 use afterimage_lab::scene::Triangles;
-use afterimage_lab::trace::{Bvh, Ray};
 use afterimage_testing::{Draws, holds};
 use glam::{Vec3, vec3};
 

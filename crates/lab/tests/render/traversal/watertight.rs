@@ -1,7 +1,7 @@
 //! H80: no ray leaves a closed surface.
 
 use super::scenes::{all, direction, point, sphere};
-use afterimage_lab::trace::{Bvh, Ray};
+use afterimage_lab::rays::{Bvh, Ray};
 use afterimage_testing::{Draws, holds};
 use glam::{Vec3, vec3};
 

@@ -4,9 +4,9 @@ use super::BenchArgs;
 use crate::failure::{Failure, warn};
 use crate::output::write_json;
 use afterimage_lab::clock::Quartiles;
-use afterimage_lab::measure::{FrameTime, PatternReport, ROUNDS, TracedView, measure, patterns};
 use afterimage_lab::pipeline::{Processor, ProcessorInfo};
-use afterimage_lab::trace::settings::TraceSettings;
+use afterimage_trace::measure::{FrameTime, PatternReport, ROUNDS, TracedView, measure, patterns};
+use afterimage_trace::settings::TraceSettings;
 use serde::Serialize;
 
 /// Untimed frames.

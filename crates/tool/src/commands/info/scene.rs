@@ -1,8 +1,8 @@
 //! `afterimage info` of a scene: contents.
 
 use afterimage_lab::error::InputError;
+use afterimage_lab::scene::effects::Effects;
 use afterimage_lab::scene::{Environment, Material, PunctualKind, Scene, SceneLimits};
-use afterimage_lab::trace::effects::Effects;
 
 /// Limit on printed names per kind; a file may have thousands.
 const MAX_NAMES: usize = 20;

@@ -29,7 +29,7 @@ use afterimage_lab::device::Backend;
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::scanpath::HeadPath;
 use afterimage_lab::source::FrameSource;
-use afterimage_lab::trace::sampling::Sampling;
+use afterimage_trace::sampling::Sampling;
 use clap::{Args, Parser};
 use glam::DMat4;
 use std::ffi::OsString;

@@ -5,10 +5,10 @@ use super::frames::Picture;
 use super::report::Counts;
 use super::setup::Setup;
 use afterimage::Image;
-use afterimage_lab::trace::film::Film;
-use afterimage_lab::trace::sampling::Sampling;
-use afterimage_lab::trace::view::View;
-use afterimage_lab::trace::work::Spans;
+use afterimage_lab::view::View;
+use afterimage_trace::film::Film;
+use afterimage_trace::sampling::Sampling;
+use afterimage_trace::work::Spans;
 use indicatif::ProgressBar;
 use std::ops::Range;
 

@@ -2,8 +2,8 @@
 
 use super::setup::Setup;
 use crate::failure::Failure;
-use afterimage_lab::trace::stereo::GazePoint;
-use afterimage_lab::trace::view::View;
+use afterimage_lab::view::View;
+use afterimage_trace::stereo::GazePoint;
 
 /// Largest distance between the pupils, meters: people have 0.05 to 0.075.
 const MAX_IPD_M: f64 = 0.2;

@@ -11,8 +11,8 @@ use afterimage::kernel::color::srgb_encode;
 use afterimage_lab::picture::to_rgb8;
 use afterimage_lab::source::exr_file;
 use afterimage_lab::source::exr_file::FrameToWrite;
-use afterimage_lab::trace::surfaces::Surfaces;
-use afterimage_lab::trace::view::View;
+use afterimage_lab::view::View;
+use afterimage_trace::surfaces::Surfaces;
 
 /// Depth of the background in files.
 const BACKGROUND_M: f32 = 1e10;

@@ -8,8 +8,8 @@ use crate::args::pattern::SamplingName;
 use crate::report::cameras::cameras_json;
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::pipeline::{Processor, ProcessorInfo};
-use afterimage_lab::trace::effects::Effects;
-use afterimage_lab::trace::view::View;
+use afterimage_lab::scene::effects::Effects;
+use afterimage_lab::view::View;
 use glam::DMat4;
 use serde::Serialize;
 

@@ -7,9 +7,9 @@ use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::device::Backend;
 use afterimage_lab::scene::Environment;
 use afterimage_lab::source::{FrameSource, Light, ReadLimits, SceneChoice, SceneOptions, StillSource, ViewedScene};
-use afterimage_lab::trace::Tracer;
-use afterimage_lab::trace::view::View;
-use afterimage_lab::trace::world::World;
+use afterimage_lab::view::View;
+use afterimage_trace::Tracer;
+use afterimage_trace::world::World;
 use std::path::Path;
 
 /// A scene ready to be traced.
