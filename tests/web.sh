@@ -23,7 +23,7 @@ else
 fi
 
 step "shaders in the languages of other devices"
-cargo test "${everything[@]}" --test twins -- --nocapture backends::
+cargo test "${everything[@]}" --test twins --test render -- --nocapture backends::
 
 step "recordings of the tests: twins, sequences, simulators"
 recordings="$PWD/target/recordings"

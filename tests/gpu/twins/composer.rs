@@ -1,7 +1,8 @@
 //! Errors in shaders name the file and line that they come from.
 
 use super::library::SHADERS;
-use super::modules::{read, validate};
+use super::modules::validate;
+use super::names::read;
 
 #[test]
 fn errors_name_file_and_line() {

@@ -10,6 +10,9 @@ pub use afterimage::shader::SHADERS;
 /// Where `shaders/lib` and `src/kernel` are.
 pub const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
 
+/// Modules that define `load`, for those that need it: none here.
+pub const LOADS: &[&str] = &[];
+
 /// (WGSL file stem, function there) without a Rust twin of that name: stand-ins for the standard library and for a
 /// closure, and `mix`, which is a builtin of WGSL.
 pub const WGSL_ONLY: &[(&str, &str)] =

@@ -17,6 +17,7 @@ mod library;
 mod matching;
 mod mathematics;
 mod modules;
+mod names;
 mod noise;
 mod order;
 mod probe;

@@ -1,4 +1,4 @@
-//! Every entry point of the drop-in and of the lab in the languages of other devices: SPIR-V, Metal, HLSL, GLSL 4.50
+//! Every entry point of the drop-in and of this crate in the languages of other devices: SPIR-V, Metal, HLSL, GLSL 4.50
 //! and that of GLES 3.1. Compilers that are installed check the SPIR-V and the GLSL.
 
 use super::modules::composed_modules;

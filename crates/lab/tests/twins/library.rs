@@ -8,6 +8,9 @@ pub use afterimage_lab::shader::SHADERS;
 /// Folder that contains `shaders/lib` and `src/kernel`.
 pub const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
 
+/// Modules that define `load`, for those that need it.
+pub const LOADS: &[&str] = &["lighting_maps"];
+
 /// WGSL functions without a Rust twin of the same name, as (file stem, function).
 pub const WGSL_ONLY: &[(&str, &str)] = &[];
 

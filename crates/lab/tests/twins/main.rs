@@ -3,6 +3,8 @@
 
 #[path = "../../../../tests/gpu/twins/modules.rs"]
 mod modules;
+#[path = "../../../../tests/gpu/twins/names.rs"]
+mod names;
 #[path = "../../../../tests/gpu/twins/order.rs"]
 mod order;
 #[allow(dead_code, reason = "the drop-in's twins use all of it")]

@@ -15,5 +15,6 @@ mod sound_scene;
 mod head;
 mod raster;
 mod sampling;
+mod shaders;
 mod trace;
 mod traversal;
