@@ -1,5 +1,5 @@
-//! The tracer's shaders under the rules of all shaders: valid, in the languages of other devices, and without arithmetic
-//! that compilers reorder.
+//! The tracer's shaders under the rules of all shaders: valid, in the languages of other devices, and without
+//! arithmetic that compilers reorder.
 
 #[path = "../../../../lab/tests/twins/backends.rs"]
 mod backends;
