@@ -187,7 +187,7 @@ fn block_end(text: &str, from: usize) -> usize {
 mod tests {
     use super::*;
     use afterimage::wgpu::naga;
-    use afterimage_lab::shader::SHADERS;
+    use afterimage_trace::shader::SHADERS;
 
     #[test]
     fn nothing_of_an_effect_that_was_cut_out_is_left() {
