@@ -24,6 +24,8 @@ pub struct RenderedFrame {
     pub reference_on_device: Option<DeviceHandle>,
     /// Content for the methods.
     pub content: Content,
+    /// Albedo of every pixel of the content, linear, if it was requested and the source has it.
+    pub albedo: Option<Image<[f32; 3]>>,
     /// Jitter of the content's projection in pixels, as in
     /// [`FrameRequest::jitter_px`](crate::source::FrameRequest::jitter_px); 0 without jitter.
     pub jitter_px: [f32; 2],
@@ -90,6 +92,7 @@ impl RenderedFrame {
             reference,
             reference_on_device: None,
             content: Content::FullRate,
+            albedo: None,
             jitter_px: [0.0; 2],
             geometry: Geometry::Full,
             samples: None,

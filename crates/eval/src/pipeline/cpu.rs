@@ -46,12 +46,14 @@ impl Executor for CpuExecutor {
         let trust = full_rate.trust.as_ref().filter(|_| inputs.use_trust);
         let color: &Image<[f32; 3]> = &given.color;
         let lod = given.has_lod.then_some(&candidate.lods);
+        let albedo = inputs.frame.albedo.as_ref().filter(|_| post.desc().has_albedo);
         let frame = Frame {
             depth: depth.as_ref().map(from_ref),
             motion: motion.as_ref().map(from_ref),
             trust: trust.as_ref().map(from_ref),
             lod: lod.as_ref().map(from_ref),
             noise: given.noise.as_ref().map(from_ref),
+            albedo: albedo.as_ref().map(from_ref),
             reset: inputs.reset(),
             ..Frame::new(from_ref(&color), from_ref(&candidate.view), inputs.frame.index)
         };

@@ -61,6 +61,7 @@ pub struct Pipeline {
     pixel: Option<[u32; 2]>,
     quad_views: Option<QuadViewLayout>,
     is_jittered: bool,
+    has_albedo: bool,
     reference_samples: Option<u32>,
 }
 
@@ -88,7 +89,8 @@ impl Pipeline {
             let Some(settings) = kind.settings() else {
                 return check_oracle(&foveation).map(|()| Run::Oracle(Oracle::default()));
             };
-            executor.add(kind, &ContextDesc { settings: Settings { foveation, ..*settings }, ..desc })?;
+            let settings = Settings { foveation, ..*settings };
+            executor.add(kind, &ContextDesc { settings, has_albedo: kind.has_albedo(), ..desc })?;
             Ok::<_, CreateError>(Run::Method(methods.next().unwrap_or_default()))
         };
         Ok(Self {
@@ -103,6 +105,7 @@ impl Pipeline {
             pixel: None,
             quad_views: None,
             is_jittered: false,
+            has_albedo: runs.iter().any(RunKind::has_albedo),
             reference_samples: None,
         })
     }
@@ -152,6 +155,7 @@ impl Pipeline {
             jitter_px: self.is_jittered.then(|| Foveation::jitter_px(index + 1)),
             reference_samples: self.reference_samples,
             geometry: self.foveator.view_geometry,
+            albedo: self.has_albedo,
             device: self.executor.device().filter(|_| !self.foveates_in_memory()),
             ..FrameRequest::full_rate(index)
         }

@@ -11,7 +11,9 @@ use std::sync::Arc;
 pub enum RunKind {
     /// The post-process with these settings. The pipeline's foveation replaces theirs.
     PostProcess(Settings),
-    /// The same on a device with this WGSL in place of the method's pass, for measurements of changed passes.
+    /// The same, of frames with the albedo of every pixel.
+    WithAlbedo(Settings),
+    /// The post-process on a device with this WGSL in place of the method's pass, for measurements of changed passes.
     WithShader(Settings, Arc<str>),
     /// Every pixel at its finest level of detail so far: the upper bound of temporal reuse. Defined for stills only.
     Oracle,
@@ -60,9 +62,14 @@ impl RunKind {
     /// Settings of a method; `None` for the oracle.
     pub(super) fn settings(&self) -> Option<&Settings> {
         match self {
-            Self::PostProcess(settings) | Self::WithShader(settings, _) => Some(settings),
+            Self::PostProcess(settings) | Self::WithAlbedo(settings) | Self::WithShader(settings, _) => Some(settings),
             Self::Oracle => None,
         }
+    }
+
+    /// Whether the method gets the albedo of every pixel.
+    pub(super) fn has_albedo(&self) -> bool {
+        matches!(self, Self::WithAlbedo(_))
     }
 
     /// A shader runs on a device only.
@@ -72,7 +79,7 @@ impl RunKind {
                 let expected = "a device, which runs the shader".into();
                 Err(SettingsError { setting: "backend", found: "the CPU".into(), expected })
             }
-            Self::PostProcess(_) | Self::Oracle => Ok(()),
+            Self::PostProcess(_) | Self::WithAlbedo(_) | Self::Oracle => Ok(()),
         }
     }
 }

@@ -17,6 +17,8 @@ pub struct FrameRequest {
     pub jitter_px: Option<[f32; 2]>,
     /// Where depth and motion of a foveated frame are needed.
     pub geometry: Geometry,
+    /// Whether the albedo of every pixel is wanted. Sources that do not know it ignore this.
+    pub albedo: bool,
     /// Whether the full-rate frame is wanted in memory, as the reference of metrics.
     pub reference: bool,
     /// Samples a pixel of the reference: the mean of that many jittered full-rate frames. `None`: as the source filters
@@ -47,6 +49,7 @@ impl FrameRequest {
             wanted: Wanted::FullRate,
             jitter_px: None,
             geometry: Geometry::Full,
+            albedo: false,
             reference: true,
             reference_samples: None,
             device: None,

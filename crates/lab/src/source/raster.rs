@@ -303,6 +303,27 @@ impl RasterSource {
         Ok(read_color(&self.device, &color))
     }
 
+    /// The frame without albedo. If the full-rate frame is the reference, quad views have the atlas layout in place:
+    /// their samples at full rate are then exactly those of the reference.
+    fn rendered(&mut self, request: &FrameRequest) -> Result<RenderedFrame, InputError> {
+        let whole = request.reference.then(|| self.full_rate(request)).transpose()?;
+        let Some(whole) = whole else {
+            let (frame, took) = self.submit_timed(|source, encoder| source.record(encoder, request))?;
+            return Ok(RenderedFrame { render: Some(took), ..frame });
+        };
+        if request.wanted == Wanted::FullRate {
+            let Some(jitter_px) = request.jitter_px else { return Ok(whole) };
+            let (frame, took) = self.points(request, jitter_px)?;
+            return Ok(RenderedFrame { render: Some(took), ..whole.jittered(frame, jitter_px) });
+        }
+        let (frame, took) = self.submit_timed(|source, encoder| {
+            let views = source.pose(request);
+            source.record_content(encoder, request, views, AtlasLayout::InPlace)
+        })?;
+        let RenderedFrame { content, jitter_px, samples, .. } = frame;
+        Ok(RenderedFrame { content, jitter_px, samples, render: Some(took), ..whole })
+    }
+
     fn record_quad_views(
         &mut self,
         encoder: &mut CommandEncoder,
@@ -400,25 +421,14 @@ impl FrameSource for RasterSource {
         self.of.info()
     }
 
-    /// If the full-rate frame is the reference, quad views have the atlas layout in place: their samples at full rate
-    /// are then exactly those of the reference.
     fn render(&mut self, request: &FrameRequest) -> Result<RenderedFrame, InputError> {
-        let whole = request.reference.then(|| self.full_rate(request)).transpose()?;
-        let Some(whole) = whole else {
-            let (frame, took) = self.submit_timed(|source, encoder| source.record(encoder, request))?;
-            return Ok(RenderedFrame { render: Some(took), ..frame });
-        };
-        if request.wanted == Wanted::FullRate {
-            let Some(jitter_px) = request.jitter_px else { return Ok(whole) };
-            let (frame, took) = self.points(request, jitter_px)?;
-            return Ok(RenderedFrame { render: Some(took), ..whole.jittered(frame, jitter_px) });
+        let frame = self.rendered(request)?;
+        if !request.albedo {
+            return Ok(frame);
         }
-        let (frame, took) = self.submit_timed(|source, encoder| {
-            let views = source.pose(request);
-            source.record_content(encoder, request, views, AtlasLayout::InPlace)
-        })?;
-        let RenderedFrame { content, jitter_px, samples, .. } = frame;
-        Ok(RenderedFrame { content, jitter_px, samples, render: Some(took), ..whole })
+        // Its time is not that of the frame: renderers that give albedo have it beside depth and motion.
+        let albedo = self.albedo(request.index, frame.jitter_px)?;
+        Ok(RenderedFrame { albedo: Some(albedo), ..frame })
     }
 
     /// The colors are those of a full-rate frame with the same jitter and one sample a pixel.

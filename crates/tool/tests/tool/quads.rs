@@ -146,3 +146,20 @@ fn what_quads_cannot_do_is_refused() {
     refuses(&["bench", "--foveation", "planned"], &["--foveation"]);
     assert!(!folder.path("out").exists(), "nothing was written");
 }
+
+#[test]
+fn albedo_is_worth_decibels_on_texture_and_reaches_smr_alone() {
+    let more = "--size 160x90 --frames 10 --no-jod --camera walk --share 8 --jitter halton --reference-samples 1";
+    let psnr_db = |backend: &str, more: &str, method: &str| {
+        let report = quads("builtin:courtyard", backend, more).json("report.json");
+        report["methods"][method]["psnr_db"].as_f64().unwrap()
+    };
+    let without = ["smr", "taau"].map(|method| psnr_db("cpu", &format!("{more} --method {method}"), method));
+    let with = format!("{more} --albedo scene --method smr,taau");
+    let [smr, taau] = ["smr", "taau"].map(|method| psnr_db("cpu", &with, method));
+    println!("smr, taau: {without:?} without, {smr}, {taau} with albedo");
+    assert!(smr > without[0] + 0.1, "smr: {smr} after {without:?}");
+    assert_eq!(taau, without[1]);
+    let with = format!("{more} --albedo scene --method smr");
+    assert!((psnr_db("gpu", &with, "smr") - smr).abs() < 0.01, "on a device");
+}

@@ -31,6 +31,10 @@ fn bad_usage_is_one_line_and_exit_code_2() {
     refuses(&run("builtin:cubes", &out, &["--jitter", "halton", "--source", "trace"]), &["--jitter halton", "raster"]);
     let layers = ["--jitter", "halton", "--foveation", "layers"];
     refuses(&run("builtin:cubes", &out, &layers), &["--jitter halton", "--foveation planned"]);
+    let albedo = ["--albedo", "scene", "--jitter", "halton"];
+    refuses(&run("analytic:still", &out, &albedo), &["--albedo", "rasterised scenes"]);
+    refuses(&run("builtin:cubes", &out, &albedo[..2]), &["--albedo", "--jitter halton"]);
+    refuses(&run("builtin:cubes", &out, &[&albedo[..], &["--method", "none,taau"]].concat()), &["--albedo", "add smr"]);
     refuses(&run(still, &out, &["--start=-1"]), &["start"]);
     refuses(&run(still, &out, &["--wrs-bias", "exponential:x"]), &["LAMBDA"]);
     refuses(&run(still, &out, &["--gate-divisor", "0"]), &["gate.divisor"]);

@@ -72,7 +72,9 @@ impl Executor for DeviceExecutor {
     fn run(&mut self, run: usize, inputs: &RunInputs<'_>, shade: Shade<'_>) -> Result<MethodOutput, FrameError> {
         let (gpu, run) = (&self.gpu, &mut self.runs[run]);
         let views = from_ref(&inputs.candidate.view);
+        let albedo = self.inputs.albedo().filter(|_| run.post().desc().has_albedo).map(Into::into);
         let frame = self.inputs.frame(views, inputs.frame.index, inputs.reset(), inputs.use_trust);
+        let frame = Frame { albedo, ..frame };
         let planned = chooses(&run.post().desc().settings).then(|| plan(gpu, &self.clock, run, &frame)).transpose()?;
         let is_simulated = inputs.frame.is_simulated();
         let shaded = planned.as_ref().filter(|_| !is_simulated).and_then(|(request, _)| shade(request));

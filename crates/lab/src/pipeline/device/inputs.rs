@@ -28,6 +28,8 @@ pub struct DeviceInputs {
     trust: Texture,
     lod: Texture,
     noise: Texture,
+    /// Albedo; none before the first frame that has it.
+    albedo: Option<Texture>,
     foveated: Texture,
     simulator: GpuSimulator,
     import: Option<ComputeShader>,
@@ -45,11 +47,12 @@ struct Given {
     trust: Option<Texture>,
     lod: Option<Texture>,
     noise: Option<Texture>,
+    albedo: Option<Texture>,
 }
 
 impl Given {
     fn color(color: &Texture) -> Self {
-        Self { color: color.clone(), depth: None, motion: None, trust: None, lod: None, noise: None }
+        Self { color: color.clone(), depth: None, motion: None, trust: None, lod: None, noise: None, albedo: None }
     }
 }
 
@@ -71,6 +74,7 @@ impl DeviceInputs {
             trust: texture(TextureFormat::R32Float, read),
             lod: texture(TextureFormat::R32Float, read | TextureUsages::STORAGE_BINDING),
             noise: texture(TextureFormat::Rg32Float, read),
+            albedo: None,
             simulator: GpuSimulator::new(&gpu.device, desc, formats.color)?,
             import: None,
             surfaces: None,
@@ -129,6 +133,15 @@ impl DeviceInputs {
                 };
             }
         }
+        self.given.albedo = frame.albedo.as_ref().map(|albedo| self.upload_albedo(albedo));
+    }
+
+    fn upload_albedo(&mut self, albedo: &Image<[f32; 3]>) -> Texture {
+        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+        let new = || self.gpu.texture(albedo.size(), 1, TextureFormat::Rgba32Float, usage);
+        let texture = self.albedo.get_or_insert_with(new).clone();
+        self.gpu.write_rgb(&texture, 0, albedo);
+        texture
     }
 
     /// Takes depth, motion and trust of the full-rate frame, and its color if that is on this device.
@@ -249,9 +262,15 @@ impl DeviceInputs {
         Ok(())
     }
 
-    /// The foveated frame as input of the methods. `use_trust`: include the trust mask, if the frame has one.
+    /// Albedo of every pixel of the frame, for methods that take it.
+    pub(super) fn albedo(&self) -> Option<&Texture> {
+        self.given.albedo.as_ref()
+    }
+
+    /// The foveated frame as input of the methods, without albedo. `use_trust`: include the trust mask, if the frame
+    /// has one.
     pub fn frame<'a>(&'a self, views: &'a [ViewFrame], index: u64, reset: Reset, use_trust: bool) -> Frame<'a> {
-        let Given { color, depth, motion, trust, lod, noise } = &self.given;
+        let Given { color, depth, motion, trust, lod, noise, .. } = &self.given;
         Frame {
             depth: depth.as_ref().map(Into::into),
             motion: motion.as_ref().map(Into::into),

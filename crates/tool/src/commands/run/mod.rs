@@ -30,7 +30,7 @@ use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::scanpath::HeadPath;
 use afterimage_lab::source::FrameSource;
 use afterimage_trace::sampling::Sampling;
-use clap::{Args, Parser};
+use clap::{Args, Parser, ValueEnum};
 use glam::DMat4;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -88,6 +88,10 @@ pub struct RunArgs {
     pub method: Vec<MethodName>,
     #[command(flatten)]
     pub method_settings: MethodArgs,
+    /// Give smr the albedo of every pixel: it interpolates and remembers light, and texture is the pixel's own. scene:
+    /// that of the surfaces of a rasterised scene. With --foveation planned and --jitter halton
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub albedo: Option<AlbedoName>,
     /// Give the methods a mask of pixels that move without motion vectors, if the scene has one (analytic:scroll)
     #[arg(long)]
     pub trust: bool,
@@ -128,6 +132,13 @@ pub struct RunArgs {
     /// Frames in which --pixel is printed, from A to B, both included; default: the last one
     #[arg(long, value_parser = parse_frame_range, requires = "pixel", value_name = "A..B", help_heading = "Output")]
     pub pixel_frames: Option<[usize; 2]>,
+}
+
+/// Values of `--albedo`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum AlbedoName {
+    /// Of the surfaces of a rasterised scene
+    Scene,
 }
 
 impl RunArgs {

@@ -40,6 +40,9 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
     if args.foveation.is_quads() {
         check_quads(args)?;
     }
+    if args.albedo.is_some() {
+        check_albedo(args)?;
+    }
     let fps = args.input.fps(info);
     let geometry = args.input.geometry(info)?;
     let mut methods: Vec<(&'static str, RunKind)> = vec![];
@@ -171,7 +174,22 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
     let settings = Settings { foveation, ..args.method_settings.settings(method, args.seed, is_noisy) };
     let settings = args.foveation.antialiased(settings);
     settings.validate()?;
-    Ok(RunKind::PostProcess(settings))
+    let takes_albedo = args.albedo.is_some() && settings.method.kind() == MethodKind::Smr;
+    Ok(if takes_albedo { RunKind::WithAlbedo(settings) } else { RunKind::PostProcess(settings) })
+}
+
+/// Refuses frames that have no albedo, and methods that do not take it.
+fn check_albedo(args: &RunArgs) -> Result<(), Failure> {
+    let missing = if !args.input.is_rasterised() {
+        "only rasterised scenes have it; give a scene (.gltf, .glb, builtin:NAME) without --source trace"
+    } else if !args.foveation.is_quads() || !args.foveation.is_jittered() {
+        "it is for antialiased planned frames; add --foveation planned --jitter halton"
+    } else if !args.method.contains(&MethodName::Post(MethodKind::Smr)) {
+        "smr alone takes it; add smr to --method"
+    } else {
+        return Ok(());
+    };
+    Err(Failure::Input(format!("--albedo: {missing}, or leave --albedo out")))
 }
 
 /// Refuses sampling patterns, which choose pixels themselves.

@@ -93,7 +93,7 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
         let figures = accumulator.report(memory_bytes[i] as f64 / pixels);
         let (pass, render) = (accumulator.times().after(WARM_UP), accumulator.render().after(WARM_UP));
         let rust = match &clip.methods[i + 1].1 {
-            RunKind::PostProcess(settings) | RunKind::WithShader(settings, _) => {
+            RunKind::PostProcess(settings) | RunKind::WithAlbedo(settings) | RunKind::WithShader(settings, _) => {
                 as_rust(&Settings { foveation: clip.foveation, ..*settings })
             }
             RunKind::Oracle => "no settings: the oracle is an upper bound that knows all earlier frames".into(),
