@@ -13,6 +13,9 @@ use wgpu::{CommandEncoder, Device, Texture, TextureFormat, TextureUsages};
 /// Format in which the post-process works: Bevy's of cameras with `Hdr`.
 const FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 
+/// Format of albedos: the smallest that every device can write, and that can say that one is unknown.
+pub(crate) const ALBEDO_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+
 /// Depth of lighting passes where no quad is chosen. Bevy writes the whole numbers from 0 to 255, divided by 255, of
 /// which each pass tests one for equality: this is none of them.
 const NO_PASS: f32 = 0.5 / 255.0;
@@ -39,12 +42,20 @@ fn extent(frame: &ExtractedAfterimage) -> wgpu::Extent3d {
     wgpu::Extent3d { width, height, depth_or_array_layers: 1 }
 }
 
+/// A texture of the frame's size that passes of the plugin write: `kept`, or a new one.
+fn fitting(kept: Option<Texture>, device: &Device, frame: &ExtractedAfterimage, format: TextureFormat) -> Texture {
+    let fits = |kept: &Texture| kept.size() == extent(frame);
+    kept.filter(fits).unwrap_or_else(|| texture(device, extent(frame), format, STORAGE | TextureUsages::COPY_SRC))
+}
+
 /// State of a camera's post-process.
 #[derive(Debug)]
 pub(crate) struct Context {
     post: Afterimage,
     /// Depth of a plain projection, in place of that of the prepass.
     pub plain: Option<Texture>,
+    /// Albedo of every pixel, if the camera is deferred.
+    pub albedo: Option<Texture>,
     /// Depth of the prepass, while that of the main pass is closed.
     pub depth: Option<Texture>,
     /// Frame, where it cannot be written to the main texture, or where a debug view is shown instead.
@@ -93,15 +104,20 @@ pub(crate) struct Facts {
 /// Inputs of a frame, which borrows them.
 struct Inputs<'a> {
     regions: [[Region<'a>; 1]; 3],
+    albedo: Option<&'a Texture>,
     views: [ViewFrame; 1],
 }
 
 impl<'a> Inputs<'a> {
-    fn new(frame: &ExtractedAfterimage, facts: Facts, drawn: Drawn<'a>, plain: Option<&'a Texture>) -> Self {
+    fn new(
+        (frame, facts): (&ExtractedAfterimage, Facts),
+        drawn: Drawn<'a>,
+        [plain, albedo]: [Option<&'a Texture>; 2],
+    ) -> Self {
         let Drawn { color, depth, motion, origin_px } = drawn;
         let depth = plain.map_or(Region::new(depth, origin_px), |plain| Region::new(plain, [0, 0]));
         let regions = [[Region::new(color, origin_px)], [depth], [Region::new(motion, origin_px)]];
-        Self { regions, views: [ViewFrame { jitter_px: facts.jitter_px, ..frame.view }] }
+        Self { regions, albedo, views: [ViewFrame { jitter_px: facts.jitter_px, ..frame.view }] }
     }
 
     fn frame(&self, index: u64, is_reset: bool) -> Frame<'_> {
@@ -109,6 +125,7 @@ impl<'a> Inputs<'a> {
         Frame {
             depth: Some(depth),
             motion: Some(motion),
+            albedo: self.albedo.map(Textures::from),
             reset: if is_reset { Reset::All } else { Reset::None },
             ..Frame::new(color, &self.views, index)
         }
@@ -121,6 +138,7 @@ impl Context {
         Ok(Self {
             post,
             plain: None,
+            albedo: None,
             depth: None,
             spare: None,
             spare_debug: None,
@@ -136,7 +154,9 @@ impl Context {
     pub fn prepare(&mut self, device: &Device, frame: &ExtractedAfterimage) -> Result<(), String> {
         (self.is_planned, self.is_shown) = (false, false);
         self.has_late = AtomicBool::new(false);
-        if self.post.desc().settings != frame.desc.settings {
+        if self.post.desc().has_albedo != frame.desc.has_albedo {
+            self.post = Afterimage::new(device, &frame.desc, FORMAT).map_err(|error| error.to_string())?;
+        } else if self.post.desc().settings != frame.desc.settings {
             self.post.set_settings(device, frame.desc.settings).map_err(|error| error.to_string())?;
         }
         match (&self.counters, frame.counts) {
@@ -183,15 +203,14 @@ impl Context {
         oblique: &mut ObliquePass,
     ) -> Result<(), FrameError> {
         self.resize(device, encoder, frame)?;
+        let has_albedo = frame.desc.has_albedo;
+        self.albedo = has_albedo.then(|| fitting(self.albedo.take(), device, frame, ALBEDO_FORMAT));
         self.plain = frame.oblique.map(|projection| {
-            let plain = self.plain.take().filter(|plain| [plain.width(), plain.height()] == frame.desc.size_px);
-            let plain = plain.unwrap_or_else(|| {
-                texture(device, extent(frame), TextureFormat::R32Float, STORAGE | TextureUsages::COPY_SRC)
-            });
+            let plain = fitting(self.plain.take(), device, frame, TextureFormat::R32Float);
             oblique.record(device, encoder, (drawn.depth, drawn.origin_px), &plain, (projection, facts.jitter_px));
             plain
         });
-        let inputs = Inputs::new(frame, facts, drawn, self.plain.as_ref());
+        let inputs = Inputs::new((frame, facts), drawn, [self.plain.as_ref(), None]);
         self.post.plan(device, encoder, &inputs.frame(facts.index, frame.reset))?;
         let (open, format) = (tested.main.texture(), tested.main.texture().format());
         let fits = |kept: &Texture| kept.size() == open.size() && kept.format() == format;
@@ -231,8 +250,8 @@ impl Context {
         output: &wgpu::TextureView,
         blit: &mut BlitPass,
     ) -> Result<(), FrameError> {
-        let plain = self.plain.clone();
-        let inputs = Inputs::new(frame, facts, drawn, plain.as_ref());
+        let own = [self.plain.clone(), self.albedo.clone()];
+        let inputs = Inputs::new((frame, facts), drawn, own.each_ref().map(Option::as_ref));
         let ratio = self.exposure.map_or(1.0, |previous| facts.exposure / previous);
         let exposure = if ratio != 1.0 && ratio.is_finite() { Exposure::Changed { ratio } } else { Exposure::Same };
         let described = Frame { exposure, ..inputs.frame(facts.index, frame.reset) };

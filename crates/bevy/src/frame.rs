@@ -10,7 +10,7 @@ use crate::orthographic::{self, is_orthographic};
 use afterimage::internal::{ContextDesc, Foveation, Method, ViewFrame};
 use afterimage::{DebugView, MotionConvention, ViewGeometry};
 use bevy::camera::{ClearColorConfig, CompositingSpace, MainPassResolutionOverride};
-use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass, PreviousViewData};
+use bevy::core_pipeline::prepass::{DeferredPrepass, DepthPrepass, MotionVectorPrepass, PreviousViewData};
 use bevy::diagnostic::FrameCount;
 use bevy::ecs::entity::EntityHashMap;
 use bevy::ecs::query::{QueryData, QueryState};
@@ -87,6 +87,7 @@ struct MainCamera {
     is_scaled: Has<MainPassResolutionOverride>,
     depth: Has<DepthPrepass>,
     motion: Has<MotionVectorPrepass>,
+    is_deferred: Has<DeferredPrepass>,
 }
 
 fn extract(
@@ -99,6 +100,7 @@ fn extract(
     let index = u64::from(world.resource::<FrameCount>().0);
     let is_supported = world.contains_resource::<AfterimageSupported>();
     let layers = world.resource::<Layers>().clone();
+    let clear_color = world.get_resource::<ClearColor>().cloned().unwrap_or_default();
     // Kept, because a new query looks at every archetype.
     let cameras = query.get_or_insert_with(|| world.query());
     for mut camera in cameras.iter_mut(&mut world) {
@@ -145,6 +147,16 @@ fn extract(
                     camera.main
                 );
             }
+            desc.has_albedo = camera.is_deferred && smr.antialias && is_opaque(camera.camera, &clear_color);
+            // Of either there is one.
+            desc.keep_alpha = !desc.has_albedo;
+            if camera.is_deferred && !desc.has_albedo {
+                info_once!(
+                    "Afterimage remembers textures of deferred camera {} with their light: albedo needs \
+                     Afterimage::antialias, and a clear color that is opaque",
+                    camera.main
+                );
+            }
         }
         entity.insert(ExtractedAfterimage {
             desc,
@@ -156,6 +168,16 @@ fn extract(
             counts: camera.counts,
             has_planted_jitter: planted.jitter,
         });
+    }
+}
+
+/// Whether nothing shows through what a camera draws.
+fn is_opaque(camera: &Camera, default: &ClearColor) -> bool {
+    match camera.clear_color {
+        ClearColorConfig::Default => default.0.is_fully_opaque(),
+        ClearColorConfig::Custom(color) => color.is_fully_opaque(),
+        // A sky is drawn there.
+        ClearColorConfig::None => true,
     }
 }
 

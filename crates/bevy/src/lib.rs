@@ -26,6 +26,7 @@
 //! 5. Bevy draws what has no prepass, what transmits light, what is transparent, particles and gizmos at every pixel,
 //!    and its effects.
 
+mod albedo;
 mod auto;
 mod blit;
 mod camera;
@@ -76,6 +77,7 @@ impl Plugin for AfterimagePlugin {
             late::LatePlugin,
             frame::FramePlugin,
             pass::PassPlugin,
+            albedo::AlbedoPlugin,
             diagnostics::DiagnosticsPlugin,
             warnings::WarningsPlugin,
         ));

@@ -140,7 +140,7 @@ fn jitter(view: ViewQuery<Camera>, contexts: Res<Contexts>, uniforms: Res<ViewUn
 ///
 /// After a cut one pixel of each quad is chosen (`is_quarter`). Bevy's main pass cannot change its size for one frame:
 /// devices then shade the whole quad of each pixel that is open, as many as at full rate.
-fn plan(
+pub(crate) fn plan(
     view: ViewQuery<Camera>,
     mut contexts: ResMut<Contexts>,
     mut oblique: ResMut<ObliquePass>,

@@ -33,6 +33,8 @@ pub struct Recorded {
     pub open: Option<wgpu::Texture>,
     /// What is given in its place where it is not that of a distance, of the viewport alone.
     pub plain: Option<wgpu::Texture>,
+    /// Albedo of the viewport, if the camera is deferred.
+    pub albedo: Option<wgpu::Texture>,
     /// Motion vectors, likewise.
     pub motion: wgpu::Texture,
     /// The camera's main texture.
@@ -58,9 +60,10 @@ pub fn recorded(render_world: &mut World) -> Vec<Recorded> {
             let color = (**target.main_texture_other()).clone();
             let depth = (*prepass.depth.as_ref()?.texture.texture).clone();
             let motion = (*prepass.motion_vectors.as_ref()?.texture.texture).clone();
-            let (open, plain) = (context.depth.clone(), context.plain.clone());
+            let (open, plain, albedo) = (context.depth.clone(), context.plain.clone(), context.albedo.clone());
             let output = (**target.main_texture()).clone();
-            Some(Recorded { camera, desc: frame.desc, view, index, color, mask, depth, open, plain, motion, output })
+            let desc = frame.desc;
+            Some(Recorded { camera, desc, view, index, color, mask, depth, open, plain, albedo, motion, output })
         })
         .collect()
 }

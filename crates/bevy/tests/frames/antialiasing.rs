@@ -10,10 +10,10 @@ use bevy::prelude::*;
 use bevy_afterimage::testing::Planted;
 use bevy_afterimage::{Afterimage, Foveated};
 
-const SIZE: UVec2 = UVec2::new(240, 136);
+pub const SIZE: UVec2 = UVec2::new(240, 136);
 
 /// Samples a pixel along each side, of the reference.
-const SAMPLES: u32 = 4;
+pub const SAMPLES: u32 = 4;
 
 /// A still camera. The courtyard is without thin bars, whose errors would hide those of a wrong jitter.
 fn still(size: UVec2, (is_flat, is_deferred): (bool, bool), components: (Afterimage, Foveated)) -> Headless {
@@ -46,7 +46,7 @@ fn shot(headless: &mut Headless, frames: usize) -> Vec<u8> {
 }
 
 /// Mean of the samples of a pixel, in linear light.
-fn averaged(rgba: &[u8]) -> Vec<u8> {
+pub fn averaged(rgba: &[u8]) -> Vec<u8> {
     let width = SIZE.x * SAMPLES;
     let pixel = |i: u32| {
         let corner = UVec2::new(i % SIZE.x, i / SIZE.x) * SAMPLES;

@@ -21,7 +21,7 @@ pub fn deferred() -> impl Bundle {
 }
 
 /// The courtyard, of which half of the materials are deferred; a cube with holes of either kind, and a pane of glass.
-fn yard(moves: bool) -> Headless {
+pub fn yard(moves: bool) -> Headless {
     Headless::new(
         SIZE,
         (ScenePlugin { lamps: 4, moves }, |app: &mut App| {

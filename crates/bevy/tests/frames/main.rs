@@ -3,6 +3,7 @@
 #[path = "../../examples/common/mod.rs"]
 mod common;
 
+mod albedo;
 mod antialiasing;
 mod applications;
 mod auto;
