@@ -8,6 +8,7 @@ use bevy::asset::RenderAssetUsages;
 use bevy::asset::uuid::Uuid;
 use bevy::camera::{ClearColorConfig, RenderTarget};
 use bevy::core_pipeline::core_3d::{main_opaque_pass_3d, main_transparent_pass_3d};
+use bevy::core_pipeline::prepass::DeferredPrepass;
 use bevy::core_pipeline::schedule::Core3d;
 use bevy::log::tracing_subscriber;
 use bevy::mesh::MeshVertexBufferLayoutRef;
@@ -250,6 +251,11 @@ fn what_is_not_drawn_as_it_should_is_said_once() {
     assert_eq!(lines_about(headless, "ClearColorConfig::None", (Msaa::Off, Afterimage::default(), uncleared)), 1);
     let reflecting = (Msaa::Off, Afterimage::default(), ScreenSpaceReflections::default());
     assert_eq!(lines_about(headless, "ScreenSpaceReflections", reflecting), 1);
+    let of_deferred = [true, false, false].map(|antialias| {
+        let afterimage = Afterimage { antialias, ..default() };
+        lines_about(headless, "albedo needs", (Msaa::Off, DeferredPrepass, afterimage))
+    });
+    assert_eq!(of_deferred, [0, 1, 1]);
     let said = lines("renders every pixel");
     let flat = Projection::from(OrthographicProjection { scale: 0.03, ..OrthographicProjection::default_3d() });
     assert_eq!(lines_about(headless, "renders every pixel", (Msaa::Off, Afterimage::default(), flat)), said);
