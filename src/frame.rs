@@ -251,8 +251,8 @@ impl<'a, Colors, Scalars, Vectors> FrameInputs<'a, Colors, Scalars, Vectors> {
     /// Rejects a missing albedo if the context needs one, and an albedo if it does not.
     fn check_albedo(&self, desc: &ContextDesc) -> Result<(), FrameError> {
         let (found, expected) = match (desc.has_albedo, self.albedo.is_some()) {
-            (true, false) => ("None", "the albedo of every pixel, because ContextDesc::has_albedo is set"),
-            (false, true) => ("given", "None; or set ContextDesc::has_albedo"),
+            (true, false) => ("None", "the albedo of every pixel, because has_albedo is set"),
+            (false, true) => ("given", "None; or set has_albedo"),
             _ => return Ok(()),
         };
         Err(FrameError::Value { value: FrameValue::Albedo, view: 0, found: found.into(), expected })

@@ -238,18 +238,18 @@ impl ViewFrame {
             return Ok(());
         }
         if !has_depth {
-            let expected = "given: the camera's motion is added to vectors (ContextDesc::motion), for which \
+            let expected = "given: the camera's motion is added to vectors (Desc::motion), for which \
                             distances must be known";
             return refuse(FrameValue::Depth, "None".into(), expected);
         }
         if matches!(convention, DepthConvention::Orthographic { .. }) {
             let expected = "that of a perspective view, or complete vectors: the camera's motion is added to \
-                            vectors (ContextDesc::motion), and rays of an orthographic view are not known";
+                            vectors (Desc::motion), and rays of an orthographic view are not known";
             return refuse(FrameValue::DepthConvention, format!("{convention:?}"), expected);
         }
         if self.previous_from_current.is_none() {
             let expected = "given, as by ViewFrame::moved or posed, because the camera's motion is added to vectors \
-                            (ContextDesc::motion); or Reset::All";
+                            (Desc::motion); or Reset::All";
             return refuse(FrameValue::CameraMotion, "None".into(), expected);
         }
         Ok(())

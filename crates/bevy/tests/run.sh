@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# All checks of the Bevy plugin, which is a workspace of its own: format, lints, tests, examples, documentation. Needs
+# All checks of the Bevy plugin, which is a workspace of its own: lints, tests, examples, documentation. Needs
 # Rust 1.95 and a Vulkan driver, software or not. Bevy asks for Rust 1.97.1, hence --ignore-rust-version.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -7,9 +7,6 @@ cd "$(dirname "$0")/.."
 step() { printf '\n== bevy: %s (%d s so far)\n' "$*" "$SECONDS"; }
 export CARGO_INCREMENTAL=0 NODEVICE_SELECT=1
 target="${CARGO_TARGET_DIR:-target}"
-
-step "format"
-cargo fmt --check
 
 step "lints"
 cargo clippy --locked --ignore-rust-version --all-targets --features window -- -D warnings

@@ -110,6 +110,7 @@ fn wrong_albedo_is_caught() {
         ("select(found.shown, found.kept, result.keeps_nearest)", "found.shown"),
         ("level > 0u && history.lod >= 0.0", "history.lod >= 0.0"),
         ("past.is_known && past.own.w > 0.0", "past.own.w > 0.0"),
+        ("is_outside && is_known && !at_edge", "is_outside && is_known"),
         ("select(count, kept + 1.0, is_outside), past.own.w > 0.0)", "select(count, kept + 1.0, is_outside), true)"),
         ("let at = clamp(px + offset, vec2u(1u), frame.size) - 1u;", "let at = px;"),
         ("texel_of(at, view, ALBEDO_IN)", "at"),
@@ -128,8 +129,7 @@ fn albedo_that_does_not_fit_is_refused() {
     let settings = settings(true);
     let Some(mut rig) = Rig::new(with_albedo(ContextDesc::new(SIZE)), settings) else { return };
     let view = View::still(noise(SIZE, "albedo"), [20.0, 12.0]);
-    let expected =
-        "albedo of view 0 is None: expected the albedo of every pixel, because ContextDesc::has_albedo is set";
+    let expected = "albedo of view 0 is None: expected the albedo of every pixel, because has_albedo is set";
     assert_eq!(rig.refusal(&view), expected);
     let other = Settings { noisy: true, ..settings };
     let refused = rig.gpu.set_settings(&rig.device, other).unwrap_err().to_string();
@@ -139,7 +139,7 @@ fn albedo_that_does_not_fit_is_refused() {
     let refused = Afterimage::new(&rig.device, &desc, TextureFormat::Rgba16Float).unwrap_err().to_string();
     assert!(refused.contains("keep_alpha"), "{refused}");
     let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
-    let expected = "albedo of view 0 is given: expected None; or set ContextDesc::has_albedo";
+    let expected = "albedo of view 0 is given: expected None; or set has_albedo";
     assert_eq!(rig.refusal(&textured(view, 0)), expected);
 }
 
