@@ -53,6 +53,8 @@ struct RunReport<'a> {
     samples: Option<u64>,
     /// Whether the projection is jittered.
     jitter: bool,
+    /// Whether smr gets the albedo of every pixel.
+    albedo: bool,
     /// Samples a pixel of the rasterised or analytic reference; null: as many as the input has.
     reference_samples: Option<u32>,
     /// First frame that counts in scores.
@@ -144,6 +146,7 @@ pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out:
         },
         samples: (report.samples > 0).then_some(report.samples),
         jitter: clip.jitter,
+        albedo: clip.methods.iter().any(|(_, kind)| kind.has_albedo()),
         reference_samples: clip.reference_samples,
         score_from: clip.score_from,
         gaze: facts.gaze,

@@ -68,7 +68,7 @@ impl RunKind {
     }
 
     /// Whether the method gets the albedo of every pixel.
-    pub(super) fn has_albedo(&self) -> bool {
+    pub fn has_albedo(&self) -> bool {
         matches!(self, Self::WithAlbedo(_))
     }
 

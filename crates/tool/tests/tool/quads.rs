@@ -152,6 +152,7 @@ fn albedo_is_worth_decibels_on_texture_and_reaches_smr_alone() {
     let more = "--size 160x90 --frames 10 --no-jod --camera walk --share 8 --jitter halton --reference-samples 1";
     let psnr_db = |backend: &str, more: &str, method: &str| {
         let report = quads("builtin:courtyard", backend, more).json("report.json");
+        assert_eq!(report["albedo"], more.contains("--albedo"));
         report["methods"][method]["psnr_db"].as_f64().unwrap()
     };
     let without = ["smr", "taau"].map(|method| psnr_db("cpu", &format!("{more} --method {method}"), method));
