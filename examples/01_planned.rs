@@ -6,11 +6,11 @@
 
 mod headless;
 
-use afterimage::wgpu::{TextureFormat, TextureUsages};
-use afterimage::{Afterimage, Camera, Desc, Frame, MotionConvention};
+use afterimage::wgpu::{Color, TextureFormat};
+use afterimage::{Afterimage, Camera, Desc, MotionConvention, Targets};
 use glam::{Mat4, Vec3, camera::rh::proj::directx::perspective_infinite_reverse};
 use headless::Headless;
-use headless::renderer::{DEPTH, MOTION, Renderer, View};
+use headless::renderer::{Renderer, View};
 
 const SIZE: [u32; 2] = [640, 360];
 const COLOR: TextureFormat = TextureFormat::Rgba32Float;
@@ -18,14 +18,11 @@ const COLOR: TextureFormat = TextureFormat::Rgba32Float;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gpu = Headless::new()?;
     let renderer = Renderer::new(&gpu, COLOR, TextureFormat::Rgba16Float);
-    let attachment = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
-    let [depth, closed, motion, color, full] = [DEPTH, DEPTH, MOTION, COLOR, COLOR]
-        .map(|format| gpu.texture(SIZE, 1, format, attachment | TextureUsages::COPY_DST));
-    let output = gpu.texture(SIZE, 1, COLOR, TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC);
-
     // Once: a quarter of the pixels; where an eye tracker says where the eye looks, a tenth.
     let vectors = MotionConvention { without_camera: true, ..MotionConvention::BEVY };
     let mut post = Afterimage::new(&gpu.device, &Desc { motion: Some(vectors), ..Desc::new(SIZE, COLOR) })?;
+    // Its textures; an engine has its own.
+    let [targets, full] = [0; 2].map(|_| Targets::new(&gpu.device, post.desc(), COLOR));
 
     let clip_from_view = perspective_infinite_reverse(0.75, 640.0 / 360.0, 0.1);
     for index in 0..48 {
@@ -35,25 +32,25 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         // Each frame, all of which is drawn with the jittered projection.
         let mut encoder = gpu.encoder();
         let jittered = Mat4::from_cols_array_2d(&post.jittered(clip_from_view.to_cols_array_2d()));
-        let view = View { clip_from_world: jittered * world_from_view.inverse(), seconds, layer: 0 };
-        renderer.prepass(&gpu, &mut encoder, [&motion, &depth], view);
+        let view = View { clip_from_world: jittered * world_from_view.inverse(), seconds };
         let camera = Camera::new(clip_from_view.to_cols_array_2d(), world_from_view.to_cols_array_2d());
-        let plan = post.plan(&mut encoder, &Frame { motion: Some(&motion), ..Frame::new(&depth, camera) })?;
+        renderer.prepass(&gpu, targets.prepass(&mut encoder, 0, &camera), view);
+        let plan = post.plan(&mut encoder, &targets.frame(camera))?;
         // The post-process reads depth, too: a copy of it is closed.
-        encoder.copy_texture_to_texture(depth.as_image_copy(), closed.as_image_copy(), depth.size());
-        post.close(&mut encoder, &plan, &closed)?;
-        renderer.colors(&gpu, &mut encoder, [&color, &closed], view);
+        targets.close(&mut encoder, &mut post, &plan)?;
+        renderer.colors(&gpu, targets.color_pass(&mut encoder, 0, Color::BLACK), view);
         let list = plan.lists()[0].clone();
-        post.show(&mut encoder, plan, &color, &output)?;
+        post.show(&mut encoder, plan, &targets.color, &targets.output)?;
         gpu.submit(encoder);
 
         if index == 0 || index % 16 == 15 {
             let mut encoder = gpu.encoder();
-            let view = View { clip_from_world: clip_from_view * world_from_view.inverse(), seconds, layer: 0 };
-            renderer.prepass(&gpu, &mut encoder, [&motion, &closed], view);
-            renderer.colors(&gpu, &mut encoder, [&full, &closed], view);
+            let view = View { clip_from_world: clip_from_view * world_from_view.inverse(), seconds };
+            renderer.prepass(&gpu, full.prepass(&mut encoder, 0, &camera), view);
+            full.open(&mut encoder);
+            renderer.colors(&gpu, full.color_pass(&mut encoder, 0, Color::BLACK), view);
             gpu.submit(encoder);
-            let (shown, expected) = (gpu.read(&output, 0), gpu.read(&full, 0));
+            let (shown, expected) = (gpu.read(&targets.output, 0), gpu.read(&full.color, 0));
             let squares: f32 = shown.iter().zip(&expected).map(|(a, b)| (a[0] - b[0]).powi(2)).sum();
             let psnr_db = -10.0 * (squares / shown.len() as f32).log10();
             let words: Vec<u32> = bytemuck::pod_collect_to_vec(&gpu.read_buffer(&list)[28..32]);

@@ -5,15 +5,16 @@
 
 mod headless;
 
-use afterimage::wgpu::{PollType, Texture, TextureFormat, TextureUsages};
-use afterimage::{Afterimage, Camera, Desc, Exposure, Frame, Gaze, MotionConvention, Shading, ShareControl};
+use afterimage::wgpu::{Color, PollType, TextureFormat};
+use afterimage::{Afterimage, Camera, Desc, Exposure, Frame, Gaze, MotionConvention, Shading, ShareControl, Targets};
 use glam::{Mat4, Vec3, camera::rh::proj::directx::perspective_infinite_reverse};
 use headless::Headless;
-use headless::renderer::{DEPTH, MOTION, Renderer, View};
+use headless::renderer::{Renderer, View};
 use std::time::Instant;
 
-/// Compute shaders can rarely write a swapchain's format: tone mapping reads this one, and draws to the screen.
-const OUTPUT: TextureFormat = TextureFormat::Rgba16Float;
+/// Format of colors and of the picture. Compute shaders can rarely write a swapchain's format: tone mapping reads this
+/// one, and draws to the screen.
+const FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 
 struct Engine {
     gpu: Headless,
@@ -22,8 +23,7 @@ struct Engine {
     control: ShareControl,
     /// Time of the last frame; an engine measures it with timestamps.
     last_ms: f32,
-    /// Depth, a copy of it to close, motion vectors, colors, and the picture.
-    targets: [Texture; 5],
+    targets: Targets,
 }
 
 /// What the game says of a frame.
@@ -35,20 +35,14 @@ struct Moment {
     exposure: f32,
 }
 
-fn targets(gpu: &Headless, size: [u32; 2]) -> [Texture; 5] {
-    let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
-    let usages = [TextureUsages::COPY_SRC, TextureUsages::COPY_DST, usage, usage, TextureUsages::STORAGE_BINDING];
-    let formats = [DEPTH, DEPTH, MOTION, TextureFormat::Rgba16Float, OUTPUT];
-    std::array::from_fn(|i| gpu.texture(size, 1, formats[i], usage | usages[i]))
-}
-
 impl Engine {
     fn new(size: [u32; 2]) -> Result<Self, Box<dyn std::error::Error>> {
         let gpu = Headless::new()?;
         let vectors = MotionConvention { without_camera: true, ..MotionConvention::BEVY };
-        let post = Afterimage::new(&gpu.device, &Desc { motion: Some(vectors), ..Desc::new(size, OUTPUT) })?;
-        let renderer = Renderer::new(&gpu, TextureFormat::Rgba16Float, OUTPUT);
-        let (control, targets) = (ShareControl::new(50.0, [0.05, 0.5])?, targets(&gpu, size));
+        let post = Afterimage::new(&gpu.device, &Desc { motion: Some(vectors), ..Desc::new(size, FORMAT) })?;
+        let renderer = Renderer::new(&gpu, FORMAT, FORMAT);
+        let (control, targets) =
+            (ShareControl::new(50.0, [0.05, 0.5])?, Targets::new(&gpu.device, post.desc(), FORMAT));
         Ok(Self { gpu, renderer, post, control, last_ms: f32::NAN, targets })
     }
 
@@ -59,37 +53,36 @@ impl Engine {
         }
         if moment.size != self.post.desc().size_px {
             self.post.resize(moment.size)?;
-            self.targets = targets(&self.gpu, moment.size);
+            self.targets = Targets::new(&self.gpu.device, self.post.desc(), FORMAT);
         }
         let start = Instant::now();
         let share = self.control.share_for(self.last_ms);
         self.post.set_shading(Shading::Gaze { fovea_deg: 5.0, share })?;
 
-        let [depth, closed, motion, color, output] = &self.targets;
         let world_from_view = Mat4::from_translation(Vec3::new(moment.seconds, 1.5, 0.0));
         let aspect = moment.size[0] as f32 / moment.size[1] as f32;
         let clip_from_view = perspective_infinite_reverse(0.75, aspect, 0.1).to_cols_array_2d();
         let seconds = [moment.seconds, moment.seconds - 1.0 / 60.0];
         let jittered = Mat4::from_cols_array_2d(&self.post.jittered(clip_from_view));
-        let view = View { clip_from_world: jittered * world_from_view.inverse(), seconds, layer: 0 };
+        let view = View { clip_from_world: jittered * world_from_view.inverse(), seconds };
         let pose = world_from_view.to_cols_array_2d();
         let camera = Camera { gaze: moment.gaze, ..Camera::new(clip_from_view, pose) };
         let frame = Frame {
-            motion: Some(motion),
             is_cut: moment.is_cut,
             exposure: Exposure::Scene { exposure: moment.exposure },
-            ..Frame::new(depth, camera)
+            ..self.targets.frame(camera)
         };
         let mut encoder = self.gpu.encoder();
-        self.renderer.prepass(&self.gpu, &mut encoder, [motion, depth], view);
+        let (gpu, renderer, targets) = (&self.gpu, &self.renderer, &self.targets);
+        renderer.prepass(gpu, targets.prepass(&mut encoder, 0, &camera), view);
         let plan = self.post.plan(&mut encoder, &frame)?;
-        encoder.copy_texture_to_texture(depth.as_image_copy(), closed.as_image_copy(), depth.size());
-        self.post.close(&mut encoder, &plan, closed)?;
-        self.renderer.colors(&self.gpu, &mut encoder, [color, closed], view);
-        let warnings: Vec<_> = self.post.show(&mut encoder, plan, color, output)?.warnings().collect();
+        targets.close(&mut encoder, &mut self.post, &plan)?;
+        renderer.colors(gpu, targets.color_pass(&mut encoder, 0, Color::BLACK), view);
+        let shown = self.post.show(&mut encoder, plan, &targets.color, &targets.output)?;
+        let warnings: Vec<_> = shown.warnings().collect();
         // After show: transparent things, without the jitter and with the depth that was not closed; then tone mapping.
         let clip_from_world = Mat4::from_cols_array_2d(&clip_from_view) * world_from_view.inverse();
-        self.renderer.glass(&self.gpu, &mut encoder, [output, depth], View { clip_from_world, seconds, layer: 0 });
+        renderer.glass(gpu, targets.output_pass(&mut encoder, 0), View { clip_from_world, seconds });
         self.gpu.submit(encoder);
         self.gpu.device.poll(PollType::wait_indefinitely())?;
         self.last_ms = start.elapsed().as_secs_f32() * 1000.0;

@@ -5,11 +5,11 @@
 
 mod headless;
 
-use afterimage::wgpu::{TextureFormat, TextureUsages};
-use afterimage::{Afterimage, Camera, Desc, Frame, Gaze, MotionConvention, Shading, ViewGeometry};
+use afterimage::wgpu::{Color, TextureFormat};
+use afterimage::{Afterimage, Camera, Desc, Frame, Gaze, MotionConvention, Shading, Targets, ViewGeometry};
 use glam::{Mat4, Vec3, Vec4};
 use headless::Headless;
-use headless::renderer::{DEPTH, MOTION, Renderer, View};
+use headless::renderer::{Renderer, View};
 
 const SIZE: [u32; 2] = [384, 384];
 const COLOR: TextureFormat = TextureFormat::Rgba32Float;
@@ -31,16 +31,12 @@ fn projection(angles_rad: [f32; 4]) -> Mat4 {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gpu = Headless::new()?;
     let renderer = Renderer::new(&gpu, COLOR, TextureFormat::Rgba16Float);
-    let attachment = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
-    let [depth, closed, motion, color, full] = [DEPTH, DEPTH, MOTION, COLOR, COLOR]
-        .map(|format| gpu.texture(SIZE, 2, format, attachment | TextureUsages::COPY_DST));
-    let output = gpu.texture(SIZE, 2, COLOR, TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC);
-
     // Once: all pixels within 10 degrees around the gaze of each eye, and 8 % of the others.
     let vectors = MotionConvention { without_camera: true, ..MotionConvention::BEVY };
     let shading = Shading::Gaze { fovea_deg: 10.0, share: 0.08 };
     let desc = Desc { view_count: 2, shading, motion: Some(vectors), ..Desc::new(SIZE, COLOR) };
     let mut post = Afterimage::new(&gpu.device, &desc)?;
+    let [targets, full] = [0; 2].map(|_| Targets::new(&gpu.device, &desc, COLOR));
 
     for index in 0..32 {
         let seconds = [index as f32 / 60.0, (index as f32 - 1.0) / 60.0];
@@ -54,37 +50,33 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let gaze = Gaze::on_ray(head.into(), ray, 4.0, pose);
             Camera { gaze, ..Camera::new(projections[eye].to_cols_array_2d(), pose) }
         });
-        let view = |eye: usize, clip_from_view: Mat4| View {
-            clip_from_world: clip_from_view * poses[eye].inverse(),
-            seconds,
-            layer: eye as u32,
-        };
+        let view =
+            |eye: usize, clip_from_view: Mat4| View { clip_from_world: clip_from_view * poses[eye].inverse(), seconds };
         let jittered = [0, 1].map(|eye| {
             let clip_from_view = post.jittered(projections[eye].to_cols_array_2d());
             view(eye, Mat4::from_cols_array_2d(&clip_from_view))
         });
 
         let mut encoder = gpu.encoder();
-        for view in jittered {
-            renderer.prepass(&gpu, &mut encoder, [&motion, &depth], view);
+        for (eye, view) in jittered.into_iter().enumerate() {
+            renderer.prepass(&gpu, targets.prepass(&mut encoder, eye, &left), view);
         }
-        let frame = Frame { motion: Some(&motion), others: &[right], ..Frame::new(&depth, left) };
-        let plan = post.plan(&mut encoder, &frame)?;
-        encoder.copy_texture_to_texture(depth.as_image_copy(), closed.as_image_copy(), depth.size());
-        post.close(&mut encoder, &plan, &closed)?;
-        for view in jittered {
-            renderer.colors(&gpu, &mut encoder, [&color, &closed], view);
+        let plan = post.plan(&mut encoder, &Frame { others: &[right], ..targets.frame(left) })?;
+        targets.close(&mut encoder, &mut post, &plan)?;
+        for (eye, view) in jittered.into_iter().enumerate() {
+            renderer.colors(&gpu, targets.color_pass(&mut encoder, eye, Color::BLACK), view);
         }
         let lists = plan.lists().to_vec();
-        post.show(&mut encoder, plan, &color, &output)?;
+        post.show(&mut encoder, plan, &targets.color, &targets.output)?;
         gpu.submit(encoder);
 
         for (eye, camera) in [left, right].iter().enumerate().filter(|_| index % 16 == 15) {
             let mut encoder = gpu.encoder();
-            renderer.prepass(&gpu, &mut encoder, [&motion, &closed], view(eye, projections[eye]));
-            renderer.colors(&gpu, &mut encoder, [&full, &closed], view(eye, projections[eye]));
+            renderer.prepass(&gpu, full.prepass(&mut encoder, eye, camera), view(eye, projections[eye]));
+            full.open(&mut encoder);
+            renderer.colors(&gpu, full.color_pass(&mut encoder, eye, Color::BLACK), view(eye, projections[eye]));
             gpu.submit(encoder);
-            let (shown, expected) = (gpu.read(&output, eye as u32), gpu.read(&full, eye as u32));
+            let (shown, expected) = (gpu.read(&targets.output, eye as u32), gpu.read(&full.color, eye as u32));
             let squares: f32 = shown.iter().zip(&expected).map(|(a, b)| (a[0] - b[0]).powi(2)).sum();
             let psnr_db = -10.0 * (squares / shown.len() as f32).log10();
             let words: Vec<u32> = bytemuck::pod_collect_to_vec(&gpu.read_buffer(&lists[eye])[28..32]);

@@ -1,18 +1,18 @@
 //! The smallest application with a window: a renderer draws a tenth of the pixels, most of them around the mouse, which
 //! is the gaze, and a blit copies the picture to the swapchain.
 //!
-//! The post-process adds to an application the fields `post` and `gaze` and two of the `targets` of `App`, and the
-//! lines marked (1) to (4).
+//! The post-process adds to an application the fields `post`, `targets` and `gaze` of `App`, and the lines marked (1)
+//! to (4).
 //!
 //! `cargo run --release --example 04_window` (closes by itself after AFTERIMAGE_FRAMES frames, if that is set)
 
 mod headless;
 
-use afterimage::wgpu::{self, CurrentSurfaceTexture, Texture, TextureFormat, TextureUsages, util::TextureBlitter};
-use afterimage::{Afterimage, Camera, Desc, Frame, Gaze, MotionConvention, Shading};
+use afterimage::wgpu::{self, Color, CurrentSurfaceTexture, TextureFormat, util::TextureBlitter};
+use afterimage::{Afterimage, Camera, Desc, Gaze, MotionConvention, Shading, Targets};
 use glam::{Mat4, Vec3, camera::rh::proj::directx::perspective_infinite_reverse};
 use headless::Headless;
-use headless::renderer::{DEPTH, MOTION, Renderer, View};
+use headless::renderer::{Renderer, View};
 use std::{error::Error, sync::Arc};
 use winit::application::ApplicationHandler;
 use winit::event::WindowEvent;
@@ -31,20 +31,10 @@ struct App {
     config: wgpu::SurfaceConfiguration,
     blitter: TextureBlitter,
     renderer: Renderer,
-    /// Depth, a copy of it to close, motion vectors, colors, and the picture.
-    targets: [Texture; 5],
+    targets: Targets,
     post: Afterimage,
     gaze: Gaze,
     index: u64,
-}
-
-fn targets(gpu: &Headless, size: [u32; 2]) -> [Texture; 5] {
-    let read = TextureUsages::TEXTURE_BINDING;
-    let drawn = TextureUsages::RENDER_ATTACHMENT | read;
-    let (from, to) = (drawn | TextureUsages::COPY_SRC, drawn | TextureUsages::COPY_DST);
-    let usages = [from, to, drawn, drawn, TextureUsages::STORAGE_BINDING | read];
-    let formats = [DEPTH, DEPTH, MOTION, FORMAT, FORMAT];
-    std::array::from_fn(|i| gpu.texture(size, 1, formats[i], usages[i]))
 }
 
 impl App {
@@ -67,7 +57,7 @@ impl App {
         Ok(Self {
             blitter: TextureBlitter::new(&gpu.device, config.format),
             renderer: Renderer::new(&gpu, FORMAT, FORMAT),
-            targets: targets(&gpu, size),
+            targets: Targets::new(&gpu.device, post.desc(), FORMAT),
             post,
             gaze: Gaze::Lost,
             index: 0,
@@ -83,9 +73,9 @@ impl App {
         if !size.contains(&0) && size != [self.config.width, self.config.height] {
             [self.config.width, self.config.height] = size;
             self.surface.configure(&self.gpu.device, &self.config);
-            self.targets = targets(&self.gpu, size);
             // (2) Discards history.
             self.post.resize(size)?;
+            self.targets = Targets::new(&self.gpu.device, self.post.desc(), FORMAT);
         }
         Ok(())
     }
@@ -100,24 +90,23 @@ impl App {
             CurrentSurfaceTexture::Lost | CurrentSurfaceTexture::Validation => return Err("the surface is lost".into()),
             CurrentSurfaceTexture::Timeout | CurrentSurfaceTexture::Occluded => return Ok(()),
         };
-        let (gpu, [depth, closed, motion, color, picture]) = (&self.gpu, &self.targets);
+        let (gpu, targets) = (&self.gpu, &self.targets);
         let aspect = self.config.width as f32 / self.config.height as f32;
         let clip_from_view = perspective_infinite_reverse(0.75, aspect, 0.1).to_cols_array_2d();
         let seconds = [self.index, self.index.saturating_sub(1)].map(|index| index as f32 / 60.0);
         let world_from_view = Mat4::from_translation(Vec3::new(0.5 * seconds[0].sin(), 1.5, 0.0));
         // (3) The post-process: all of the frame is drawn with the jittered projection, colors where depth is left.
         let jittered = Mat4::from_cols_array_2d(&self.post.jittered(clip_from_view));
-        let view = View { clip_from_world: jittered * world_from_view.inverse(), seconds, layer: 0 };
+        let view = View { clip_from_world: jittered * world_from_view.inverse(), seconds };
         let camera = Camera { gaze: self.gaze, ..Camera::new(clip_from_view, world_from_view.to_cols_array_2d()) };
         let mut encoder = gpu.encoder();
-        self.renderer.prepass(gpu, &mut encoder, [motion, depth], view);
-        let plan = self.post.plan(&mut encoder, &Frame { motion: Some(motion), ..Frame::new(depth, camera) })?;
-        encoder.copy_texture_to_texture(depth.as_image_copy(), closed.as_image_copy(), depth.size());
-        self.post.close(&mut encoder, &plan, closed)?;
-        self.renderer.colors(gpu, &mut encoder, [color, closed], view);
-        self.post.show(&mut encoder, plan, color, picture)?;
+        self.renderer.prepass(gpu, targets.prepass(&mut encoder, 0, &camera), view);
+        let plan = self.post.plan(&mut encoder, &targets.frame(camera))?;
+        targets.close(&mut encoder, &mut self.post, &plan)?;
+        self.renderer.colors(gpu, targets.color_pass(&mut encoder, 0, Color::BLACK), view);
+        self.post.show(&mut encoder, plan, &targets.color, &targets.output)?;
         // Your tone mapping would come here.
-        let [picture, shown] = [picture, &screen.texture].map(|t| t.create_view(&Default::default()));
+        let [picture, shown] = [&targets.output, &screen.texture].map(|t| t.create_view(&Default::default()));
         self.blitter.copy(&gpu.device, &mut encoder, &picture, &shown);
         gpu.submit(encoder);
         gpu.queue.present(screen);

@@ -1,5 +1,5 @@
-//! Description of a renderer's foveation: level of detail by eccentricity, and the filter by which coarse regions are
-//! shaded. A level of detail `l` means blocks of 2^l pixels a side.
+//! Foveation as the passes take it, of full-size and of planned frames. `levels::Foveation` documents what full-size
+//! frames have of it.
 
 use crate::error::{SettingsError, check};
 use crate::geometry::ViewGeometry;
@@ -9,20 +9,19 @@ use crate::kernel::quads::{FIRST_STEP, budget_quads};
 #[cfg(feature = "bevy-0-20")]
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
-/// Filter by which a renderer shades coarse regions. Default: [`Mip`](Self::Mip). Example: [`Foveation`].
+/// Kind of frames: the filters of [`levels::Filter`](crate::levels::Filter), and planned frames. Default:
+/// [`Mip`](Self::Mip).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[cfg_attr(feature = "bevy-0-20", derive(Reflect), reflect(Default))]
 #[non_exhaustive]
 pub enum Filter {
-    /// Mip levels of linear light (means of 2x2 pixels), trilinear between levels: renderers that shade fewer pixels
-    /// and upscale.
+    /// Mip levels, trilinear.
     #[default]
     Mip,
-    /// Gaussian blur whose width grows linearly with eccentricity.
+    /// Gaussian blur.
     Gauss,
-    /// One point sample a block: coarse shading hardware (variable rate shading). Block edges are powers of two, so
-    /// that blends between regions become steps.
+    /// One point sample a block.
     Block,
     /// Full rate everywhere; no foveation.
     Off,
@@ -57,29 +56,8 @@ impl Filter {
     }
 }
 
-/// Foveation of a renderer: concentric regions around the gaze, and the shading rate of each. Angles are true visual
-/// angles.
-///
-/// Set it to match your renderer: it tells the post-process the level of detail of each pixel
-/// ([`Settings::foveation`](crate::internal::Settings::foveation)). The simulators ([`levels`](crate::levels)) foveate
-/// a full-rate frame by the same description.
-///
-/// ```
-/// use afterimage::internal::{Filter, Foveation};
-///
-/// // Variable rate shading: full rate to 10 degrees, 2x2 blocks to 25 degrees, 4x4 blocks beyond.
-/// let foveation = Foveation {
-///     filter: Filter::Block,
-///     fovea_deg: 10.0,
-///     mid_deg: 25.0,
-///     rate_mid: 2,
-///     rate_far: 4,
-///     ..Foveation::default()
-/// };
-/// foveation.validate()?;
-/// assert_eq!((foveation.lod(0.0), foveation.lod(30.0)), (0.0, 2.0));
-/// # Ok::<(), afterimage::SettingsError>(())
-/// ```
+/// Foveation of a renderer: concentric regions around the gaze, and the shading rate of each, as in
+/// [`levels::Foveation`](crate::levels::Foveation).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 #[cfg_attr(feature = "bevy-0-20", derive(Reflect), reflect(Default))]

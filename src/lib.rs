@@ -18,7 +18,7 @@
 //! # Where to look
 //!
 //! - `Desc`, `Frame`, `Plan`: descriptions of a context of planned frames and of a frame, and the chosen pixels.
-//!   `Camera`, [`Gaze`]: description of a view.
+//!   `Camera`, [`Gaze`]: description of a view. `Targets`: its textures, for renderers that have none.
 //! - [`levels`]: the same of frames with levels of detail, their methods and all tunables.
 //! - [`DepthConvention`], [`MotionConvention`]: what a renderer's depth and motion vectors mean.
 //! - [`FrameStats`], [`Warning`], [`DebugView`]: counters, messages and images of a frame's decisions.
@@ -115,7 +115,7 @@ pub use geometry::ViewGeometry;
 pub use image::Image;
 pub use kernel::debug_view::DebugView;
 #[cfg(feature = "gpu")]
-pub use planned::{Afterimage, Camera, Desc, Frame, Plan, Quarter, Shading, ShareControl};
+pub use planned::{Afterimage, Camera, Desc, Frame, Plan, Quarter, Shading, ShareControl, Targets};
 pub use stats::FrameStats;
 pub use warning::Warning;
 

@@ -57,7 +57,7 @@ pub struct ViewUniforms {
 /// Camera motion of a view, for pixels whose vectors lack it. Twin of `CameraUniforms` in
 /// `shaders/pass/inputs.wgsl`. Fields without a comment are those of `ViewMotion`.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 pub struct CameraUniforms {
     pub x: [f32; 4],

@@ -3,14 +3,10 @@
 #![allow(dead_code, reason = "no example uses all of it")]
 
 use super::Headless;
+use afterimage::Targets;
 use afterimage::wgpu::util::{BufferInitDescriptor, DeviceExt};
-use afterimage::wgpu::{
-    self, BufferUsages, CommandEncoder, CompareFunction, LoadOp, Operations, RenderPipeline, Texture, TextureFormat,
-};
+use afterimage::wgpu::{self, BufferUsages, CompareFunction, RenderPass, RenderPipeline, TextureFormat};
 use glam::Mat4;
-
-pub const DEPTH: TextureFormat = TextureFormat::Depth32Float;
-pub const MOTION: TextureFormat = TextureFormat::Rg16Float;
 
 /// All passes must draw exactly the same depth, hence `@invariant`. Motion vectors are of objects alone, current minus
 /// previous position in texture coordinates: those of the box, and 0 for what stands still.
@@ -65,13 +61,11 @@ fn world_at(object: u32, i: u32, seconds: f32) -> vec3f {
     return vec4f(0.05, 0.1, 0.07, 0.25);
 }";
 
-/// What a pass is drawn with: a projection times a pose, depth reversed; the time now and in the last frame; and the
-/// array layer of the targets.
+/// What a pass is drawn with: a projection times a pose, depth reversed; and the time now and in the last frame.
 #[derive(Clone, Copy)]
 pub struct View {
     pub clip_from_world: Mat4,
     pub seconds: [f32; 2],
-    pub layer: u32,
 }
 
 /// An object of the shader, and its number of corners in a triangle strip.
@@ -92,27 +86,25 @@ impl Renderer {
     pub fn new(gpu: &Headless, color: TextureFormat, output: TextureFormat) -> Self {
         let blended = Some(wgpu::BlendState::ALPHA_BLENDING);
         Self {
-            prepass: pipeline(gpu, "motion", MOTION.into(), true),
+            prepass: pipeline(gpu, "motion", Targets::MOTION.into(), true),
             colors: pipeline(gpu, "color", color.into(), false),
             glass: pipeline(gpu, "glass", wgpu::ColorTargetState { blend: blended, ..output.into() }, false),
         }
     }
 
     /// Draws depth and motion vectors of every pixel.
-    pub fn prepass(&self, gpu: &Headless, encoder: &mut CommandEncoder, [motion, depth]: [&Texture; 2], view: View) {
-        let loads = (LoadOp::Clear(wgpu::Color::TRANSPARENT), LoadOp::Clear(0.0));
-        draw(gpu, encoder, &self.prepass, [motion, depth], loads, &[FLOOR, BOX], view);
+    pub fn prepass(&self, gpu: &Headless, mut pass: RenderPass<'_>, view: View) {
+        draw(gpu, &mut pass, &self.prepass, &[FLOOR, BOX], view);
     }
 
     /// Draws the colors of what is as near as the depth buffer says, and the sky where nothing is.
-    pub fn colors(&self, gpu: &Headless, encoder: &mut CommandEncoder, [color, depth]: [&Texture; 2], view: View) {
-        let loads = (LoadOp::Clear(wgpu::Color::TRANSPARENT), LoadOp::Load);
-        draw(gpu, encoder, &self.colors, [color, depth], loads, &[FLOOR, BOX, SKY], view);
+    pub fn colors(&self, gpu: &Headless, mut pass: RenderPass<'_>, view: View) {
+        draw(gpu, &mut pass, &self.colors, &[FLOOR, BOX, SKY], view);
     }
 
     /// Draws transparent things over a picture.
-    pub fn glass(&self, gpu: &Headless, encoder: &mut CommandEncoder, [output, depth]: [&Texture; 2], view: View) {
-        draw(gpu, encoder, &self.glass, [output, depth], (LoadOp::Load, LoadOp::Load), &[GLASS], view);
+    pub fn glass(&self, gpu: &Headless, mut pass: RenderPass<'_>, view: View) {
+        draw(gpu, &mut pass, &self.glass, &[GLASS], view);
     }
 }
 
@@ -126,7 +118,7 @@ fn pipeline(gpu: &Headless, fragment: &str, target: wgpu::ColorTargetState, writ
         primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },
         // What is as near as the prepass says is drawn.
         depth_stencil: Some(wgpu::DepthStencilState {
-            format: DEPTH,
+            format: Targets::DEPTH,
             depth_write_enabled: Some(writes_depth),
             depth_compare: Some(CompareFunction::GreaterEqual),
             stencil: Default::default(),
@@ -144,16 +136,8 @@ fn pipeline(gpu: &Headless, fragment: &str, target: wgpu::ColorTargetState, writ
     })
 }
 
-/// A render pass that draws `objects`.
-fn draw(
-    gpu: &Headless,
-    encoder: &mut CommandEncoder,
-    pipeline: &RenderPipeline,
-    targets: [&Texture; 2],
-    (color_load, depth_load): (LoadOp<wgpu::Color>, LoadOp<f32>),
-    objects: &[Object],
-    view: View,
-) {
+/// Draws `objects`.
+fn draw(gpu: &Headless, pass: &mut RenderPass<'_>, pipeline: &RenderPipeline, objects: &[Object], view: View) {
     let mut uniforms = view.clip_from_world.to_cols_array().to_vec();
     uniforms.extend([view.seconds[0], view.seconds[1], 0.0, 0.0]);
     let (contents, usage) = (bytemuck::cast_slice(&uniforms), BufferUsages::UNIFORM);
@@ -162,29 +146,6 @@ fn draw(
         label: None,
         layout: &pipeline.get_bind_group_layout(0),
         entries: &[wgpu::BindGroupEntry { binding: 0, resource: uniforms.as_entire_binding() }],
-    });
-    let [color, depth] = targets.map(|texture| {
-        texture.create_view(&wgpu::TextureViewDescriptor {
-            dimension: Some(wgpu::TextureViewDimension::D2),
-            base_array_layer: view.layer,
-            array_layer_count: Some(1),
-            ..Default::default()
-        })
-    });
-    let store = wgpu::StoreOp::Store;
-    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: &color,
-            depth_slice: None,
-            resolve_target: None,
-            ops: Operations { load: color_load, store },
-        })],
-        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view: &depth,
-            depth_ops: Some(Operations { load: depth_load, store }),
-            stencil_ops: None,
-        }),
-        ..Default::default()
     });
     pass.set_pipeline(pipeline);
     pass.set_bind_group(0, &group, &[]);

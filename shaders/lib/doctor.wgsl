@@ -3,6 +3,8 @@
 
 const TILE_PX: u32 = 16u;
 const HYPOTHESES: u32 = 25u;
+const DISTANCES: u32 = 7u;
+const DISPARITY_FACTORS: array<f32, DISTANCES> = array<f32, DISTANCES>(0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0);
 const BOUNDARIES: u32 = 5u;
 const KINKS: u32 = 4u;
 const WIDE: u32 = 3u;
@@ -11,7 +13,9 @@ const DEPTH_STEP_PX: u32 = 6u;
 
 const MATCHED: u32 = 0u;
 const ERRORS: u32 = 1u;
-const STEPS: u32 = ERRORS + HYPOTHESES;
+const PLACED: u32 = ERRORS + HYPOTHESES;
+const DISTANCE_ERRORS: u32 = PLACED + 1u;
+const STEPS: u32 = DISTANCE_ERRORS + DISTANCES;
 const BENDS: u32 = STEPS + BOUNDARIES;
 const DECODED_BENDS: u32 = BENDS + KINKS;
 const WIDE_BENDS: u32 = DECODED_BENDS + KINKS;

@@ -1,14 +1,19 @@
 //#use color
+//#use depth
 //#use doctor
 //#use foveate
 //#use origin
+//#use reproject
 // Evidence on the inputs of a view: the words of its tiles. CPU twin: words in src/cpu/doctor_pass.rs. One workgroup a
 // tile, one invocation for 2x2 pixels. Words are sums of integers, so that their order does not matter.
 //
-// 416 reads of roots and 68 of color an invocation, most of them cached; 212 bytes written a tile.
+// 416 reads of roots and 68 of color an invocation, 112 of roots more for distances, most of them cached; 244 bytes
+// written a tile.
 
 override HAS_DEPTH: u32 = 1u;
 override HAS_MOTION: u32 = 1u;
+// Whether the camera's motion and depths are known.
+override HAS_CAMERA: u32 = 1u;
 
 // src/gpu/doctor.rs: DoctorUniforms, which documents the fields
 struct DoctorUniforms {
@@ -17,8 +22,15 @@ struct DoctorUniforms {
     depth_origin: u32,
     motion_origin: u32,
     exposure: f32,
-    unused_0: u32,
-    unused_1: u32,
+    disparity_flags: u32,
+    unused: u32,
+    ray_scale: vec2f,
+    ray_offset: vec2f,
+    jitter_px: vec2f,
+    disparity_a: f32,
+    disparity_b: f32,
+    camera: ViewMotion,
+    unused_camera: vec4f,
     maps: array<vec4f, HYPOTHESES>,
 }
 
@@ -121,6 +133,29 @@ fn match_sample(px: vec2u, level: u32) {
     }
 }
 
+// Compares the frame at a pixel with the previous frame where the camera saw the pixel's surface, at the distance of each
+// hypothesis.
+fn match_distances(px: vec2u, level: u32) {
+    if HAS_CAMERA == 0u {
+        return;
+    }
+    let map = DisparityMap(frame.disparity_a, frame.disparity_b, frame.disparity_flags);
+    let stored = disparity(textureLoad(depth_in, from_origin(px, frame.depth_origin), 0, 0).x, map);
+    if stored <= frame.camera.sky {
+        return;
+    }
+    let at = vec2f(px / 2u);
+    let ray = vec2f(px) * frame.ray_scale + frame.ray_offset;
+    let shown = lookup_now(at, level);
+    add(PLACED, 1u);
+    var factors = DISPARITY_FACTORS;
+    for (var i = 0u; i < DISTANCES; i++) {
+        let moved = camera_vector(ray, stored * factors[i], frame.camera) + frame.jitter_px;
+        let predicted = lookup_past(vec2f(at.x + moved.x * 0.5, at.y + moved.y * 0.5), level);
+        add(DISTANCE_ERRORS + i, fixed(abs(shown - predicted)));
+    }
+}
+
 fn signal_at(px: vec2u, axis: vec2i, offset: i32) -> f32 {
     let at = clamp(vec2i(px) + axis * offset, vec2i(0), vec2i(frame.size) - 1);
     let green = textureLoad(color_in, from_origin(vec2u(at), frame.color_origin), 0, 0).y;
@@ -179,6 +214,7 @@ fn main(@builtin(local_invocation_id) id: vec3u, @builtin(local_invocation_index
     let tile = tiles[group.x];
     let first = tile.xy + 2u * id.xy;
     match_sample(first, tile.z);
+    match_distances(first, tile.z);
     for (var i = 0u; i < 4u; i++) {
         add_pixel(first + vec2u(i & 1u, i >> 1u));
     }

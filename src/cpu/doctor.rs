@@ -75,6 +75,7 @@ impl Doctor {
             now: &roots,
             past: self.past.as_ref().filter(|_| observation.now.has_past).unwrap_or(&roots),
             maps: &maps(&self.chart.desc),
+            still: observation.now.still,
         };
         observation.words = doctor_pass::words(&examined, &observation.now.tiles);
         self.chart.add(observation);

@@ -1,11 +1,14 @@
 //! Evidence on the inputs of a view. Twins: `shaders/pass/doctor_roots_pass.wgsl` ([`root_means`]) and
 //! `shaders/pass/doctor_pass.wgsl` ([`words`]).
 
-use crate::doctor::Tile;
+use crate::doctor::{StillSurfaces, Tile};
 use crate::image::Image;
+use crate::kernel::depth::disparity;
 use crate::kernel::doctor::*;
+use crate::kernel::reproject::camera_vector;
 use crate::kernel::{color, foveate, sanitize};
 use crate::parallel::collect;
+use glam::Vec2;
 
 pub(super) struct Examined<'a> {
     pub color: &'a Image<[f32; 3]>,
@@ -18,6 +21,8 @@ pub(super) struct Examined<'a> {
     pub past: &'a Image<f32>,
     /// Maps of the hypotheses.
     pub maps: &'a [[f32; 4]],
+    /// What the camera saw of surfaces that stand still, if its motion is known.
+    pub still: Option<StillSurfaces>,
 }
 
 /// Roots of the mean signal of 2x2 pixels of colors times `exposure`.
@@ -44,6 +49,7 @@ impl Examined<'_> {
             for i in 0..half {
                 let first = [tile.origin_px[0] + 2 * i, tile.origin_px[1] + 2 * j];
                 self.match_sample(first, tile.lattice_level, &mut words);
+                self.match_distances(first, tile.lattice_level, &mut words);
                 for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
                     self.add_pixel([first[0] + dx, first[1] + dy], &mut words);
                 }
@@ -68,6 +74,26 @@ impl Examined<'_> {
             let [x, y] = if map[2] > 0.0 { [stored[1], stored[0]] } else { stored };
             let predicted = lookup(self.past, [at[0] + x * map[0], at[1] + y * map[1]], level);
             words[ERRORS as usize + h] += fixed((shown - predicted).abs());
+        }
+    }
+
+    /// Compares the frame at the pixel `px` with the previous frame where the camera saw the pixel's surface, at the
+    /// distance of each hypothesis.
+    fn match_distances(&self, px: [u32; 2], level: u32, words: &mut [u32]) {
+        let (Some(still), Some(depth)) = (&self.still, self.depth) else { return };
+        let motion = still.camera.motion();
+        let stored = disparity(depth.at(px[0] as usize, px[1] as usize), still.disparity);
+        if stored <= motion.sky {
+            return;
+        }
+        let at = px.map(|p| (p / 2) as f32);
+        let ray = Vec2::new(px[0] as f32, px[1] as f32) * Vec2::from(still.ray_scale) + Vec2::from(still.ray_offset);
+        let shown = lookup(self.now, at, level);
+        words[PLACED as usize] += 1;
+        for (i, factor) in DISPARITY_FACTORS.into_iter().enumerate() {
+            let moved = camera_vector(ray, stored * factor, motion) + Vec2::from(still.jitter_px);
+            let predicted = lookup(self.past, [at[0] + moved.x * 0.5, at[1] + moved.y * 0.5], level);
+            words[DISTANCE_ERRORS as usize + i] += fixed((shown - predicted).abs());
         }
     }
 

@@ -1,17 +1,18 @@
 //! Rule of depth. A camera that moves sideways shows how far surfaces are: their parallax, the motion beyond that of
-//! infinitely far surfaces, is proportional to their disparity. The stored depths must agree with that disparity.
+//! infinitely far surfaces, is proportional to their disparity. The stored depths must agree with that disparity, which
+//! motion vectors show, and pictures.
 //! Without such a camera, slanted planes tell distances from depth buffers, and implausible distances tell a reversed
 //! buffer from a forward one.
 
 use super::Door;
 use super::finding::{Check, Fault, Finding, Outcome};
-use super::motion::OPEN_Y_AXIS;
+use super::motion::{BETTER, OPEN_Y_AXIS, SAMPLES, WRONG, compare};
 use super::observation::Observation;
 use super::shape::Shape;
 use crate::context::ContextDesc;
 use crate::convention::DepthConvention;
 use crate::kernel::depth::disparity;
-use crate::kernel::doctor::{DEPTHS, TILE_PX};
+use crate::kernel::doctor::{DEPTHS, DISPARITY_FACTORS, DISTANCE_ERRORS, DISTANCES, PLACED, TILE_PX};
 
 /// Least parallax of a tile in pixels, and number of such tiles.
 const PARALLAX_PX: f64 = 0.2;
@@ -21,6 +22,8 @@ const TILES: usize = 20;
 const SPREAD: f64 = 0.12;
 /// Distances that are wrong by this factor are a fault.
 const FACTOR: f64 = 1.3;
+/// Hypothesis that distances are as described.
+const AS_STATED: usize = DISTANCES as usize / 2;
 /// Least number of tiles on slanted planes, and majority that decides.
 const PLANES: usize = 16;
 const MAJORITY: f64 = 0.85;
@@ -40,8 +43,12 @@ pub(super) fn check(desc: &ContextDesc, observations: &[Observation], motion: &F
     let Some(stated) = Shape::of(desc.depth) else {
         return cannot_tell("orthographic views show no parallax");
     };
+    let parallax = by_parallax(desc, observations, stated, motion, door);
+    let is_decided = |finding: &Finding| !matches!(finding.outcome, Outcome::CannotTell(_));
     by_range(observations, stated, door)
-        .or_else(|| by_parallax(desc, observations, stated, motion, door))
+        .or_else(|| parallax.clone().filter(is_decided))
+        .or_else(|| by_pictures(desc, observations, stated, motion, door))
+        .or(parallax)
         .or_else(|| by_planes(desc, observations, stated, door))
         .unwrap_or_else(|| cannot_tell("the camera does not move sideways, and no slanted plane shows it"))
 }
@@ -105,12 +112,66 @@ fn by_parallax(
     if let Some(why) = why {
         return Some(Finding { evidence, ..Finding::cannot_tell(Check::Depth, why) });
     }
-    let line = match desc.depth {
+    let line = nearer(desc, stated, 1.0 / scale, door);
+    Some(Finding::wrong(Check::Depth, Fault::DepthPlanes, confidence, evidence, line))
+}
+
+/// Line that multiplies all distances by `factor`.
+fn nearer(desc: &ContextDesc, stated: Shape, factor: f64, door: Door) -> String {
+    match desc.depth {
         DepthConvention::Forward { near, .. } | DepthConvention::Reversed { near, .. } => {
-            door.depth(stated, Some(f64::from(near) / scale))
+            door.depth(stated, Some(f64::from(near) * factor))
         }
-        _ => format!("depth *= {:.4}; // or another unit of previous_from_current", 1.0 / scale),
-    };
+        _ => format!("depth *= {factor:.4}; // or another unit of previous_from_current"),
+    }
+}
+
+/// The right distances predict each frame best from the previous one.
+fn by_pictures(
+    desc: &ContextDesc,
+    observations: &[Observation],
+    stated: Shape,
+    motion: &Finding,
+    door: Door,
+) -> Option<Finding> {
+    const ALL: usize = DISTANCES as usize;
+    let seen = observations.iter().filter(|o| o.now.has_past && o.now.still.is_some());
+    let tiles = seen.flat_map(|o| o.tiles().map(move |(tile, evidence)| (o, tile, evidence)));
+    // Objects that move by themselves have vectors where those of the camera are left out.
+    let is_still = |o: &Observation, motion: [f32; 2]| !o.now.has_vectors || o.now.has_motion || motion == [0.0; 2];
+    let tiles: Vec<[f64; ALL]> = tiles
+        .filter(|(o, tile, e)| tile.is_comparable && e.word(PLACED) >= SAMPLES && is_still(o, e.motion()))
+        .map(|(_, _, e)| std::array::from_fn(|i| e.sum(DISTANCE_ERRORS + i as u32) / f64::from(e.word(PLACED))))
+        .collect();
+    if tiles.len() < TILES || motion.fault().is_some() {
+        return None;
+    }
+    let better = |a, b| compare(&tiles, a, b).significance;
+    let best = (0..ALL).fold(AS_STATED, |best, i| if better(i, best) > 0.0 { i } else { best });
+    // The least change that explains the pictures as well as the best one.
+    let mut by_change: Vec<usize> = (0..ALL).collect();
+    by_change.sort_by_key(|i| i.abs_diff(AS_STATED));
+    let found = by_change.into_iter().find(|&i| better(best, i) < BETTER).unwrap_or(best);
+    // Neighbours must be worse: a camera that only turns shows no distances.
+    let beside = [found.checked_sub(1), Some(found + 1).filter(|i| *i < ALL)].into_iter().flatten();
+    let significance = beside.map(|i| better(found, i)).fold(f64::INFINITY, f64::min);
+    let evidence = vec![
+        ("tiles", tiles.len() as f64),
+        ("factor of the distances", 1.0 / f64::from(DISPARITY_FACTORS[found])),
+        ("significance over half and twice", significance),
+        ("significance over the stated distances", if found == AS_STATED { 0.0 } else { better(found, AS_STATED) }),
+    ];
+    if significance < BETTER {
+        return None;
+    }
+    let confidence = 1.0 - (-significance / BETTER).exp();
+    if found == AS_STATED {
+        return Some(Finding::fits(Check::Depth, confidence, evidence));
+    }
+    if better(found, AS_STATED) < WRONG {
+        return None;
+    }
+    let line = nearer(desc, stated, 1.0 / f64::from(DISPARITY_FACTORS[found]), door);
     Some(Finding::wrong(Check::Depth, Fault::DepthPlanes, confidence, evidence, line))
 }
 

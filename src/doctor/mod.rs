@@ -19,11 +19,12 @@ pub use finding::{Check, Fault, Finding, Outcome};
 pub(crate) use observation::Tile;
 #[cfg(feature = "gpu")]
 pub(crate) use observation::tile_count;
-pub(crate) use observation::{Description, Observation, maps};
+pub(crate) use observation::{Description, Observation, StillSurfaces, maps};
 
 use crate::context::ContextDesc;
 use crate::error::SettingsError;
 use crate::frame::{Exposure, FrameInputs, Reset};
+use crate::uniforms::ViewState;
 
 /// Number of frames that are kept; with more, the oldest ones are forgotten.
 const KEPT: usize = 16;
@@ -35,6 +36,7 @@ pub(crate) struct Chart {
     pub view: usize,
     door: Door,
     past: Option<Past>,
+    state: ViewState,
     observations: Vec<Observation>,
 }
 
@@ -52,7 +54,7 @@ impl Chart {
             let expected = format!("the index of one of the context's {} views", desc.view_count);
             return Err(SettingsError { setting: "view", found: view.to_string(), expected });
         }
-        Ok(Self { desc: *desc, view, door, past: None, observations: vec![] })
+        Ok(Self { desc: *desc, view, door, past: None, state: ViewState::default(), observations: vec![] })
     }
 
     /// Observation of the next frame, without its words.
@@ -64,10 +66,13 @@ impl Chart {
         // A frame is compared with the one before unless there was a cut or the exposure changed.
         let continues = frame.reset == Reset::None && !matches!(frame.exposure, Exposure::Changed { .. });
         let past = self.past.filter(|past| continues && past.exposure == exposure);
+        self.state = self.state.with(&view, frame.exposure);
+        let still = || StillSurfaces::new(&self.desc, &view, &self.state);
         let now = Description {
             has_depth: frame.depth.is_some(),
             has_vectors: frame.motion.is_some(),
             has_motion: frame.motion.is_some() && !self.desc.motion.lacks_camera(),
+            still: if frame.depth.is_some() { still() } else { None },
             has_lod: frame.lod.is_some(),
             ..Description::new(&self.desc, view, gaze_px, past.map(|p| p.gaze_px))
         };

@@ -10,12 +10,12 @@ use crate::kernel::doctor::{ERRORS, HYPOTHESES, MATCHED};
 /// Noise floor: a tile whose mean difference of roots of light is below this counts little.
 const FLOOR: f64 = 0.002;
 /// Least number of samples of a tile.
-const SAMPLES: u32 = 32;
+pub(super) const SAMPLES: u32 = 32;
 /// Least significance, in standard deviations over tiles, at which one hypothesis is better than another.
-const BETTER: f64 = 4.0;
+pub(super) const BETTER: f64 = 4.0;
 /// Least significance at which the stated convention is reported as wrong. It is higher, because tiles of neighbouring
 /// frames are not independent.
-const WRONG: f64 = 7.0;
+pub(super) const WRONG: f64 = 7.0;
 
 /// Least gain over no motion at which vectors explain a frame. Tiny vectors gain little, but in every tile.
 const GAIN: f64 = 0.025;
@@ -35,14 +35,14 @@ fn tiles(observations: &[Observation]) -> Vec<[f64; HYPOTHESES as usize]> {
 
 /// Comparison of two hypotheses over tiles.
 #[derive(Clone, Copy, Debug)]
-struct Comparison {
+pub(super) struct Comparison {
     /// Number of standard deviations by which the first predicts better.
-    significance: f64,
+    pub significance: f64,
     /// Share of the errors by which the first predicts better, -1 to 1; mean over the tiles.
-    gain: f64,
+    pub gain: f64,
 }
 
-fn compare(tiles: &[[f64; HYPOTHESES as usize]], a: usize, b: usize) -> Comparison {
+pub(super) fn compare<const N: usize>(tiles: &[[f64; N]], a: usize, b: usize) -> Comparison {
     let (mut sum, mut squares) = (0.0, 1e-9);
     for errors in tiles {
         let contrast = (errors[b] - errors[a]) / (errors[b] + errors[a] + FLOOR);

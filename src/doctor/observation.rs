@@ -3,7 +3,9 @@
 use crate::context::ContextDesc;
 use crate::convention::MotionUnit;
 use crate::foveation::Filter;
+use crate::kernel::depth::DisparityMap;
 use crate::kernel::doctor::{DEPTH, DEPTHS, HYPOTHESES, MOTION, TILE_PX, WORDS};
+use crate::uniforms::{CameraUniforms, ViewState, ViewUniforms};
 use crate::view::ViewFrame;
 
 /// Largest number of tiles along an axis.
@@ -19,6 +21,34 @@ pub(crate) struct Tile {
     pub is_comparable: bool,
 }
 
+/// What is known, of surfaces that stand still in the world, of their motion on the screen: by their distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct StillSurfaces {
+    /// Rays of this frame's pixels.
+    pub ray_scale: [f32; 2],
+    pub ray_offset: [f32; 2],
+    /// From stored depths.
+    pub disparity: DisparityMap,
+    pub camera: CameraUniforms,
+    /// Jitter of the previous frame less that of this one.
+    pub jitter_px: [f32; 2],
+}
+
+impl StillSurfaces {
+    /// `None` if the camera's motion is not known. `state`: the view's state after this frame.
+    pub fn new(desc: &ContextDesc, view: &ViewFrame, state: &ViewState) -> Option<Self> {
+        let camera = CameraUniforms::new(desc, view, state);
+        let ViewUniforms { ray_scale, ray_offset, .. } = ViewUniforms::new(desc, view, state, 0, 0);
+        (camera.is_known != 0).then(|| Self {
+            ray_scale,
+            ray_offset,
+            disparity: view.depth_convention(desc).disparity_map(),
+            camera,
+            jitter_px: [0, 1].map(|i| state.previous_jitter_px[i] - state.jitter_px[i]),
+        })
+    }
+}
+
 /// The caller's description of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Description {
@@ -31,6 +61,8 @@ pub(crate) struct Description {
     pub has_vectors: bool,
     /// Whether there are vectors, and all contain the camera's motion.
     pub has_motion: bool,
+    /// What the camera's motion must look like, if that and the depths are known.
+    pub still: Option<StillSurfaces>,
     pub has_lod: bool,
     /// Whether the doctor also saw the previous frame, without a cut between the two.
     pub has_past: bool,
@@ -110,6 +142,7 @@ impl Description {
             has_depth: false,
             has_vectors: false,
             has_motion: false,
+            still: None,
             has_lod: false,
             has_past: past_gaze_px.is_some(),
             tiles: tiles.collect(),

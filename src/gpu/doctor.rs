@@ -6,10 +6,11 @@ use super::input::{check_buffer, check_inputs};
 use super::plane::{Plane, PlaneDesc, layer_view};
 use super::{Frame, Textures};
 use crate::context::ContextDesc;
-use crate::doctor::{Chart, Description, Door, Finding, Observation, maps, tile_count};
+use crate::doctor::{Chart, Description, Door, Finding, Observation, StillSurfaces, maps, tile_count};
 use crate::error::{CreateError, FrameError};
 use crate::kernel::doctor::{HYPOTHESES, WORDS};
 use crate::kernel::foveate::level_len;
+use crate::uniforms::CameraUniforms;
 use bytemuck::{Pod, Zeroable};
 use std::collections::VecDeque;
 use wgpu::{BindingResource, Buffer, BufferUsages, CommandEncoder, ComputePassDescriptor, Device, TextureFormat};
@@ -30,9 +31,32 @@ struct DoctorUniforms {
     motion_origin: u32,
     /// Factor on colors.
     exposure: f32,
-    /// Padding to a multiple of 16 bytes.
-    unused: [u32; 2],
+    /// `flags` of the `DisparityMap`.
+    disparity_flags: u32,
+    /// Padding to a multiple of 8 bytes.
+    unused: u32,
+    /// Change of a ray's x and y per pixel.
+    ray_scale: [f32; 2],
+    /// x and y of the ray through pixel (0, 0); its z is 1.
+    ray_offset: [f32; 2],
+    /// Jitter of the previous frame less that of this one.
+    jitter_px: [f32; 2],
+    /// `a` and `b` of the `DisparityMap`.
+    disparity: [f32; 2],
+    /// `ViewMotion`, and 16 bytes that are not read.
+    camera: CameraUniforms,
     maps: [[f32; 4]; HYPOTHESES as usize],
+}
+
+impl DoctorUniforms {
+    /// Those of surfaces that stand still; zeros elsewhere, and without any.
+    fn of_still(still: Option<StillSurfaces>) -> Self {
+        let Some(StillSurfaces { ray_scale, ray_offset, disparity, camera, jitter_px }) = still else {
+            return Self::zeroed();
+        };
+        let (a, b, disparity_flags) = (disparity.a, disparity.b, disparity.flags());
+        Self { ray_scale, ray_offset, jitter_px, disparity: [a, b], disparity_flags, camera, ..Self::zeroed() }
+    }
 }
 
 /// Checks whether a renderer's frames match their description: motion vectors, depth, colors, gaze and foveation of one
@@ -184,8 +208,8 @@ impl Doctor {
             depth_origin: origin(frame.depth),
             motion_origin: origin(frame.motion),
             exposure,
-            unused: [0; 2],
             maps: maps(&desc),
+            ..DoctorUniforms::of_still(now.still)
         };
         let uniforms = filled(device, "afterimage doctor", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM);
         let tiles: Vec<[u32; 4]> =
@@ -202,7 +226,11 @@ impl Doctor {
             .chain([tiles.as_entire_binding(), words.as_entire_binding()]);
         let group = self.pass.group(device, resources);
         let flag = |is_there: bool| u32::from(is_there);
-        let overrides = [("HAS_DEPTH", flag(frame.depth.is_some())), ("HAS_MOTION", flag(frame.motion.is_some()))];
+        let overrides = [
+            ("HAS_DEPTH", flag(frame.depth.is_some())),
+            ("HAS_MOTION", flag(frame.motion.is_some())),
+            ("HAS_CAMERA", flag(now.still.is_some())),
+        ];
         pass.set_pipeline(&self.pass.pipeline(device, &overrides));
         pass.set_bind_group(0, &group, &[]);
         pass.dispatch_workgroups(now.tiles.len() as u32, 1, 1);

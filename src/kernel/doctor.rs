@@ -1,5 +1,5 @@
-//! Evidence on the inputs of a renderer, tile by tile: the prediction errors of hypotheses on its motion vectors, and
-//! the fineness of the frame's detail. Words of a tile are integers, so that their sums do not depend on the order of
+//! Evidence on the inputs of a renderer, tile by tile: the prediction errors of hypotheses on its motion vectors and
+//! distances, and the fineness of the frame's detail. Words of a tile are integers, so that their sums do not depend on the order of
 //! the pixels.
 
 use super::sanitize;
@@ -8,6 +8,10 @@ use super::sanitize;
 pub const TILE_PX: u32 = 16;
 /// Number of hypotheses on motion vectors.
 pub const HYPOTHESES: u32 = 25;
+/// Number of hypotheses on distances.
+pub const DISTANCES: u32 = 7;
+/// Hypotheses on distances: factors on the disparities as described.
+pub const DISPARITY_FACTORS: [f32; DISTANCES as usize] = [0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0];
 /// Classes of boundaries between pixels: multiples of 1, 2, 4, 8, and 16 or more.
 pub const BOUNDARIES: u32 = 5;
 /// Classes of kinks: those of boundaries without the first.
@@ -23,8 +27,12 @@ pub const DEPTH_STEP_PX: u32 = 6;
 pub const MATCHED: u32 = 0;
 /// Word of a tile: errors of the hypotheses.
 pub const ERRORS: u32 = 1;
+/// Word of a tile: number of samples at a known, finite distance.
+pub const PLACED: u32 = ERRORS + HYPOTHESES;
+/// Word of a tile: errors of the hypotheses on distances.
+pub const DISTANCE_ERRORS: u32 = PLACED + 1;
 /// Word of a tile: differences of neighbouring pixels, by class of the boundary between them.
-pub const STEPS: u32 = ERRORS + HYPOTHESES;
+pub const STEPS: u32 = DISTANCE_ERRORS + DISTANCES;
 /// Word of a tile: second differences of neighbouring pixels, by class of the kink that they may straddle.
 pub const BENDS: u32 = STEPS + BOUNDARIES;
 /// Word of a tile: the same, of the sRGB-decoded frame.

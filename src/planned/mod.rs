@@ -4,11 +4,13 @@ mod camera;
 mod desc;
 mod frame;
 mod share_control;
+mod targets;
 
 pub use camera::Camera;
 pub use desc::{Desc, Shading};
 pub use frame::{Frame, Plan, Quarter};
 pub use share_control::ShareControl;
+pub use targets::Targets;
 
 use crate::error::{CreateError, FrameError, FrameValue, SettingsError};
 use crate::foveation::Foveation;
@@ -54,6 +56,8 @@ use wgpu::{Buffer, CommandEncoder, Device, Limits, Texture, TextureViewDescripto
 /// # Ok(())
 /// # }
 /// ```
+///
+/// [`Targets`] has these textures, and the render passes that draw them.
 ///
 /// The context counts frames and keeps the previous frame's camera. A frame may be dropped with its encoder: the frame
 /// after it then starts without history, and is right.

@@ -1,4 +1,5 @@
-//! Settings of the post-process.
+//! Settings as the passes take them, of full-size and of planned frames. `levels::Settings` documents what full-size
+//! frames have of them.
 
 mod wrs;
 
@@ -9,14 +10,12 @@ use crate::foveation::Foveation;
 #[cfg(feature = "bevy-0-20")]
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
-/// Method with its settings: how history is stored and combined with the foveated frame. Default:
-/// [`Smr`](Self::Smr).
+/// Method with its settings: those of [`levels::Method`](crate::levels::Method), and a baseline for planned frames.
+/// Default: [`Smr`](Self::Smr).
 ///
 /// ```
-/// use afterimage::internal::{Method, MethodKind, Settings, Smr};
+/// use afterimage::internal::{Method, MethodKind, Smr};
 ///
-/// let settings = Settings { method: Method::Taa, ..Settings::default() };
-/// assert_eq!(settings.method.name(), "taa");
 /// assert_eq!(Method::from(MethodKind::Smr), Method::Smr(Smr::default()));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,18 +23,16 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 #[cfg_attr(feature = "bevy-0-20", derive(Reflect), reflect(Default))]
 #[non_exhaustive]
 pub enum Method {
-    /// No method: the foveated frame unchanged, except that non-finite pixels are black. No history.
+    /// No method: the frame unchanged, except that non-finite pixels are black.
     None,
     /// Temporal antialiasing, which ignores gaze: a baseline for comparison.
     Taa,
     /// Temporal upsampling, which ignores gaze but uses the positions of a planned frame's samples: a baseline for
     /// comparison.
     Taau,
-    /// Scale-matched reservoirs: the sharpest sample of each surface point is shown as long as it explains the foveated
-    /// frame.
+    /// Scale-matched reservoirs.
     Smr(Smr),
-    /// Weighted reservoirs (Cantory et al., MIG 2025): a random sample of each surface point, weighted by retinal
-    /// acuity.
+    /// Weighted reservoirs (Cantory et al., MIG 2025).
     Wrs(Wrs),
 }
 
@@ -69,26 +66,14 @@ pub enum MethodKind {
     Wrs,
 }
 
-/// Settings of [`Method::Smr`], scale-matched reservoirs.
-///
-/// ```
-/// use afterimage::internal::{Method, Settings, Smr};
-///
-/// // Averages coarse regions over fewer frames than the default.
-/// let method = Method::Smr(Smr { accumulate: 0.8, ..Smr::default() });
-/// let settings = Settings { method, ..Settings::default() };
-/// settings.validate()?;
-/// # Ok::<(), afterimage::SettingsError>(())
-/// ```
+/// Settings of [`Method::Smr`], as in [`levels::Smr`](crate::levels::Smr).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 #[cfg_attr(feature = "bevy-0-20", derive(Reflect), reflect(Default))]
 pub struct Smr {
-    /// Share of equally coarse history in the output: 0 to 0.98. A larger share reduces the flicker of coarse regions
-    /// in motion, and follows changes of light later. Default 0.9.
+    /// Share of equally coarse history in the output: 0 to 0.98. Default 0.9.
     pub accumulate: f32,
-    /// Factor on the tolerated color difference of candidate and history: 0.1 to 10. More keeps detail in spite of
-    /// noise and imprecise motion vectors; less rejects outdated history sooner. Default 1.
+    /// Factor on the tolerated color difference of candidate and history: 0.1 to 10. Default 1.
     pub tolerance: f32,
     /// Whether history is scaled to follow changes of light, instead of being rejected. Default true.
     pub relight: bool,
@@ -153,19 +138,9 @@ impl Default for DepthTest {
     }
 }
 
-/// Settings of a context: method, foveation and tunables. They can be changed between frames (`set_settings` of either
-/// executor).
-///
-/// The default is [`Settings::steady`], which measures best on real frames. Other presets are
-/// [`responsive`](Self::responsive), [`traced`](Self::traced), [`weighted`](Self::weighted) and [`paper`](Self::paper);
-/// of frames shaded by quads, [`screen`](Self::screen) and [`headset`](Self::headset).
-///
-/// ```
-/// use afterimage::internal::{ContextDesc, Settings};
-///
-/// let mut desc = ContextDesc::new([1920, 1080]);
-/// desc.settings = Settings { seed: 7, ..Settings::responsive() };
-/// ```
+/// Settings of a context: method, foveation and tunables. Presets of full-size frames are those of
+/// [`levels::Settings`](crate::levels::Settings); those of planned frames are [`screen`](Self::screen) and
+/// [`headset`](Self::headset).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 #[cfg_attr(feature = "bevy-0-20", derive(Reflect), reflect(Default))]
@@ -176,11 +151,9 @@ pub struct Settings {
     pub foveation: Foveation,
     /// Depth test; `None` compares no depths. Default on.
     pub depth_test: Option<DepthTest>,
-    /// Whether frames are noisy, that is path-traced with few samples a pixel. Each frame must then have a noise input
-    /// ([`FrameInputs::noise`](crate::internal::FrameInputs::noise)), so that noise is not mistaken for a change. wrs
-    /// weights a candidate by its number of samples; smr averages history in the fovea, too, compares means of 8x8
-    /// candidates, and stores 8 more bytes a pixel and a mip chain of the candidates. On planned frames smr compares
-    /// means of samples, stores the 8 bytes but no mip chain, and does not relight history. Default false.
+    /// Whether frames are noisy, as [`levels::Settings::noisy`](crate::levels::Settings::noisy). On planned frames smr
+    /// compares means of samples, stores 8 more bytes a pixel but no mip chain, and does not relight history. Default
+    /// false.
     pub noisy: bool,
     /// Seed of the random numbers. The same seed and the same frames give the same bytes. Default 0.
     pub seed: u64,
@@ -199,37 +172,27 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// The paper's method (Cantory et al., MIG 2025) as published: weighted reservoirs, A-Chao, Bernoulli survival,
-    /// Delta E 94 gate. The result looks like the foveated frame with scattered sharp pixels, and their number grows
-    /// while the eye fixates. The cheapest preset.
+    /// [`levels::Settings::paper`](crate::levels::Settings::paper).
     pub fn paper() -> Self {
         Self { method: Method::Wrs(Wrs::default()), ..Self::default() }
     }
 
-    /// Weighted reservoirs that reach the gains that the paper reports: the gate compares at the candidate's scale,
-    /// weights fall with the eighth power of the density and the third power of the samples a pixel, and reservoirs
-    /// keep means. In a still view they keep most of the detail that [`steady`](Self::steady) keeps; in motion they
-    /// keep less of it.
+    /// [`levels::Settings::weighted`](crate::levels::Settings::weighted).
     pub fn weighted() -> Self {
         Self { method: Method::Wrs(Wrs::weighted()), ..Self::default() }
     }
 
-    /// smr for a steady image: sharp where the eye has been, coarse regions averaged over time, so that they do not
-    /// flicker. The default.
+    /// [`levels::Settings::steady`](crate::levels::Settings::steady), the default.
     pub fn steady() -> Self {
         Self::default()
     }
 
-    /// smr that rejects outdated history sooner and averages over fewer frames: moving objects and changes of light
-    /// flicker less, but less detail survives a moving camera (on Sponza, retained detail loses 2 dB). The same cost as
-    /// [`steady`](Self::steady).
+    /// [`levels::Settings::responsive`](crate::levels::Settings::responsive).
     pub fn responsive() -> Self {
         Self { method: Method::Smr(Smr::responsive()), ..Self::default() }
     }
 
-    /// smr for frames that are path-traced with few samples a pixel: averages over twice as many frames as
-    /// [`steady`](Self::steady). Each frame must have a noise input
-    /// ([`FrameInputs::noise`](crate::internal::FrameInputs::noise)).
+    /// [`levels::Settings::traced`](crate::levels::Settings::traced).
     pub fn traced() -> Self {
         Self { method: Method::Smr(Smr::traced()), noisy: true, ..Self::default() }
     }

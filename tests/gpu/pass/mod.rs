@@ -29,6 +29,7 @@ mod sparse;
 mod submission;
 mod surfaces;
 mod surfaces_hard;
+mod targets;
 
 use crate::settings::{ungated, ungated_of, wrs};
 use afterimage::gpu::{Afterimage, DebugTarget, Frame, Prime, Region, Target, Textures};

@@ -130,6 +130,12 @@ fn state_objects_alone(delivery: &mut Delivery) {
     }
 }
 
+/// Leaves the camera's motion out of the vectors, and says so. What moves by itself has no vectors.
+pub fn leave_out_camera(delivery: &mut Delivery) {
+    state_objects_alone(delivery);
+    vectors(delivery, |_| [0.0; 2]);
+}
+
 fn encode(delivery: &mut Delivery) {
     delivery.frames.iter_mut().for_each(|f| f.color = f.color.map(|c| c.map(srgb_encode)));
 }
@@ -140,7 +146,7 @@ fn show_full_rate(clip: &Clip, delivery: &mut Delivery) {
     }
 }
 
-pub const PLANTED: [Planted; 23] = [
+pub const PLANTED: [Planted; 24] = [
     planted("vectors: current minus previous", MotionDirection, OPPOSITE, |_, d| vectors(d, |[x, y]| [-x, -y])),
     planted("vectors: y up", MotionYAxis, "{ y_axis: YAxis::Up, ..", |_, d| vectors(d, |[x, y]| [x, -y])),
     planted("vectors: UV, stated pixels", MotionUnit, "{ unit: MotionUnit::Uv, ..", |_, d| convention(d, UV, PIXELS)),
@@ -169,6 +175,10 @@ pub const PLANTED: [Planted; 23] = [
         depths(clip, d, FORWARD, REVERSED)
     }),
     planted("depth: near plane 4 times too far", DepthPlanes, NEAR, |_, d| d.desc.depth = near(0.4)),
+    planted("depth: the same, vectors of objects alone", DepthPlanes, NEAR, |_, d| {
+        leave_out_camera(d);
+        d.desc.depth = near(0.4);
+    }),
     planted("color: sRGB-encoded", ColorEncoded, "pow(", |_, d| encode(d)),
     planted("gaze: y up", Fault::Gaze, "[x, height - 1.0 - y]", |_, d| gazes(d, |[x, y], [_, h]| [x, h - 1.0 - y])),
     planted("gaze: UV", Fault::Gaze, "[x * width - 0.5, y * height - 0.5]", |_, d| {

@@ -1,7 +1,7 @@
 //! Right inputs, ordinary and odd, are never accused.
 
 use super::clips::{Clip, Delivered, Delivery, foveations};
-use super::planted::{contain_jitter, jitter};
+use super::planted::{contain_jitter, jitter, leave_out_camera};
 use afterimage::internal::{Filter, Foveation};
 use afterimage::{Gaze, Image};
 use afterimage_testing::Draws;
@@ -38,7 +38,13 @@ fn clips_under_every_filter() {
         let clip = scene(&format!("analytic:{name}"));
         for foveation in in_turn.by_ref().take(3) {
             let what = format!("{name}, {:?} {}/{}", foveation.filter, foveation.rate_mid, foveation.rate_far);
-            is_not_accused(&what, &Delivery::right(&clip, foveation));
+            let mut delivery = Delivery::right(&clip, foveation);
+            is_not_accused(&what, &delivery);
+            // Vectors without the camera's motion, also in jittered frames.
+            leave_out_camera(&mut delivery);
+            is_not_accused(&format!("{what}, of objects alone"), &delivery);
+            delivery.frames.iter_mut().enumerate().for_each(|(i, frame)| frame.view.jitter_px = jitter(i));
+            is_not_accused(&format!("{what}, of objects alone, said to be jittered"), &delivery);
         }
     }
 }

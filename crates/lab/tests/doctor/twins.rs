@@ -1,8 +1,8 @@
 //! The words of both executors, bit for bit, on clips that are damaged here and there; planted errors in the shader.
 
 use super::clips::{Clip, Delivered, Delivery, eye, foveations};
-use afterimage::internal::Reset;
-use afterimage::internal::Sources;
+use super::planted::jitter;
+use afterimage::internal::{ContextDesc, Reset, Sources, ViewFrame};
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{self, BufferUsages, TextureFormat, TextureUsages};
 use afterimage::{Exposure, Image, cpu, gpu};
@@ -36,15 +36,28 @@ fn damaged() -> (Delivery, Vec<Image<f32>>) {
 struct Given {
     depth: bool,
     motion: bool,
+    /// Whether vectors are said to lack the camera's motion.
+    without_camera: bool,
     lod: bool,
     unit: f32,
 }
 
-const ALL: Given = Given { depth: true, motion: true, lod: true, unit: 1.0 };
+const ALL: Given = Given { depth: true, motion: true, without_camera: false, lod: true, unit: 1.0 };
 
 impl Given {
     fn lit(&self, color: &Image<[f32; 3]>) -> Image<[f32; 3]> {
         color.map(|c| c.map(|v| v * self.unit))
+    }
+
+    /// A jittered view, where the camera's motion is looked for.
+    fn seen(&self, view: ViewFrame, index: usize) -> ViewFrame {
+        if self.without_camera { ViewFrame { jitter_px: jitter(index), ..view } } else { view }
+    }
+
+    fn described(&self, delivery: &Delivery) -> ContextDesc {
+        let mut desc = delivery.desc;
+        desc.motion.without_camera = self.without_camera;
+        desc
     }
 
     fn exposure(&self) -> Exposure {
@@ -53,10 +66,10 @@ impl Given {
 }
 
 fn on_cpu((delivery, lods): &(Delivery, Vec<Image<f32>>), given: Given) -> Vec<Vec<u32>> {
-    let mut doctor = cpu::Doctor::new(&delivery.desc, 0).unwrap();
+    let mut doctor = cpu::Doctor::new(&given.described(delivery), 0).unwrap();
     for (i, (f, lod)) in delivery.frames.iter().zip(lods).enumerate() {
         let lit = given.lit(&f.color);
-        let (color, views, lod) = ([&lit], [f.view], [lod]);
+        let (color, views, lod) = ([&lit], [given.seen(f.view, i)], [lod]);
         let (depth, motion) = ([f.depth.as_ref().unwrap()], [f.motion.as_ref().unwrap()]);
         let frame = cpu::Frame {
             depth: given.depth.then_some(&depth[..]),
@@ -80,7 +93,7 @@ fn on_gpu((delivery, lods): &(Delivery, Vec<Image<f32>>), given: Given, source: 
             .map(|format| device.texture(delivery.desc.size_px, 1, format, usage));
     let mut doctor = afterimage_testing::gpu::validated(&device.device, "new", || {
         let sources = Sources::default().with("doctor_pass", source);
-        gpu::Doctor::with_sources(&device.device, &delivery.desc, 0, &sources).unwrap()
+        gpu::Doctor::with_sources(&device.device, &given.described(delivery), 0, &sources).unwrap()
     });
     let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
     let size = doctor.words_bytes();
@@ -93,7 +106,7 @@ fn on_gpu((delivery, lods): &(Delivery, Vec<Image<f32>>), given: Given, source: 
         device.write(&depth, 0, d.as_ref().unwrap());
         device.write(&motion, 0, m.as_ref().unwrap());
         device.write(&lod_in, 0, lod);
-        let views = [*view];
+        let views = [given.seen(*view, i)];
         let frame = gpu::Frame {
             depth: given.depth.then_some((&depth).into()),
             motion: given.motion.then_some((&motion).into()),
@@ -123,8 +136,12 @@ fn differences(a: &[Vec<u32>], b: &[Vec<u32>]) -> (usize, usize) {
 fn words_are_equal_bit_for_bit() {
     let clip = damaged();
     let source = SHADERS.compose("doctor_pass").source;
-    let none = Given { depth: false, motion: false, lod: false, unit: 2.0_f32.powi(-10) };
-    for given in [ALL, Given { depth: false, ..ALL }, Given { motion: false, unit: 3.0, ..ALL }, none] {
+    let none = Given { depth: false, motion: false, lod: false, unit: 2.0_f32.powi(-10), ..ALL };
+    let objects = Given { without_camera: true, ..ALL };
+    let camera_alone = Given { motion: false, ..objects };
+    for given in
+        [ALL, Given { depth: false, ..ALL }, Given { motion: false, unit: 3.0, ..ALL }, none, objects, camera_alone]
+    {
         let cpu = on_cpu(&clip, given);
         let Some(gpu) = on_gpu(&clip, given, &source) else { return };
         let (different, all) = differences(&cpu, &gpu);
@@ -135,17 +152,26 @@ fn words_are_equal_bit_for_bit() {
 #[test]
 fn errors_planted_in_the_shader_are_caught() {
     let clip = damaged();
-    let given = Given { unit: 3.0, ..ALL };
-    let cpu = on_cpu(&clip, given);
-    let source = SHADERS.compose("doctor_pass").source;
-    let planted = [
+    let complete = Given { unit: 3.0, ..ALL };
+    let of_vectors = [
         ("at.x + moved.x * map.x", "at.x - moved.x * map.x"),
         ("kept_depth(px + vec2u(0u, DEPTH_STEP_PX))", "kept_depth(px)"),
         ("signal(green * frame.exposure)", "signal(green)"),
     ];
-    afterimage_testing::planted::all_caught_once(source, &planted, |source| {
-        Some(differences(&cpu, &on_gpu(&clip, given, source)?).0 > 0)
-    });
+    let objects = Given { without_camera: true, ..ALL };
+    let of_distances = [
+        ("stored * factors[i]", "stored * factors[DISTANCES - 1u - i]"),
+        ("frame.camera) + frame.jitter_px", "frame.camera)"),
+        ("stored <= frame.camera.sky", "stored < 0.0"),
+        ("at.y + moved.y * 0.5", "at.y + moved.y"),
+    ];
+    for (given, planted) in [(complete, &of_vectors[..]), (objects, &of_distances)] {
+        let cpu = on_cpu(&clip, given);
+        let source = SHADERS.compose("doctor_pass").source;
+        afterimage_testing::planted::all_caught_once(source, planted, |source| {
+            Some(differences(&cpu, &on_gpu(&clip, given, source)?).0 > 0)
+        });
+    }
 }
 
 #[test]
