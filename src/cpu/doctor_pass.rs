@@ -1,5 +1,5 @@
-//! Evidence on the inputs of a view. Twins: `shaders/pass/doctor_roots_pass.wgsl` ([`root_means`]) and
-//! `shaders/pass/doctor_pass.wgsl` ([`words`]).
+//! Evidence on the inputs of a view. Twins: `shaders/shared/doctor_roots_pass.wgsl` ([`root_means`]) and
+//! `shaders/shared/doctor_pass.wgsl` ([`words`]).
 
 use crate::doctor::Tile;
 use crate::image::Image;
