@@ -2,7 +2,7 @@
 
 use crate::uniforms::ViewState;
 
-/// Sizes of the views, and ratios that follow from them. `Resize` in `shaders/pass/resize_uniforms.wgsl`.
+/// Sizes of the views, and ratios that follow from them. `Resize` in `shaders/shared/resize_uniforms.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]

@@ -2,8 +2,8 @@
 //!
 //! Every file under `shaders/` is a module and valid WGSL syntax. Comment lines `//#use name` at its top name the
 //! modules that it uses. A line `//#instead name other` below them replaces one of these by another of the same
-//! functions. `lib/` contains functions without bindings, the twins of [`kernel`](crate::kernel); `pass/`
-//! and `foveation/` contain bindings, overrides and one entry point a file.
+//! functions. `lib/` contains functions without bindings, the twins of [`kernel`](crate::kernel). `planned/`, `levels/`
+//! and `foveation/` contain bindings, overrides and one entry point a file, `shared/` what they have in common.
 
 /// One WGSL file.
 #[derive(Debug)]
@@ -40,19 +40,22 @@ macro_rules! modules {
 pub static MODULES: &[Module] = modules! {
     "foveation":
         "block_show", "foveated_views", "gauss_axis", "mip_level", "mip_show";
+    "levels":
+        "candidate_lod", "candidate_pass", "foveation_lod", "mip_chain_pass", "none_pass", "quad_fill_pass",
+        "resize_reservoirs_pass", "resize_surfaces_pass", "settled_history", "smr_pass", "surface_history", "taa_pass",
+        "taau_pass", "wrs_pass", "wrs_pixel", "wrs_quad_pass";
     "lib":
         "acuity", "antialias", "approx", "color", "debug_view", "demodulation", "depth", "doctor", "foveate", "lattice",
         "lens", "noise", "pack", "quads", "reproject", "resample", "reservoir", "resize", "rng", "sanitize", "smr",
         "sparse_smr", "stored_sample", "surface", "taa", "taau", "wrs";
-    "pass":
-        "candidate_lod", "candidate_pass", "doctor_pass", "doctor_roots_pass", "each_pixel", "foveation_lod", "inputs",
-        "mip_chain_pass", "no_albedo", "none_pass", "origin", "output", "output_and_view", "past_frame", "previous",
-        "quad_albedo_pass", "quad_around_pass", "quad_fill_pass", "quad_given_pass", "quad_key_pass", "quad_light_pass",
+    "planned":
+        "no_albedo", "quad_albedo_pass", "quad_around_pass", "quad_given_pass", "quad_key_pass", "quad_light_pass",
         "quad_list", "quad_mask_pass", "quad_observe_pass", "quad_octants_pass", "quad_pass", "quad_plan",
-        "quad_prime_pass", "quad_runs", "quad_samples", "quad_state", "quad_threshold_pass", "resize_reservoirs_pass",
-        "resize_sparse_pass", "resize_surfaces_pass", "resize_uniforms", "settled_history", "smr_pass", "sparse_albedo",
-        "sparse_history", "sparse_noise", "sparse_pixel", "surface_history", "taa_pass", "taau_pass", "view_uniforms",
-        "wrs_pass", "wrs_pixel", "wrs_quad_pass";
+        "quad_prime_pass", "quad_runs", "quad_state", "quad_threshold_pass", "resize_sparse_pass", "sparse_albedo",
+        "sparse_history", "sparse_noise", "sparse_pixel";
+    "shared":
+        "doctor_pass", "doctor_roots_pass", "each_pixel", "inputs", "origin", "output", "output_and_view", "past_frame",
+        "previous", "quad_samples", "resize_uniforms", "view_uniforms";
 };
 
 /// This crate's shaders.

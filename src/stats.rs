@@ -48,7 +48,7 @@ impl FrameStats {
             .chunks_exact(4)
             .map(|b| u64::from(u32::from_le_bytes([b[0], b[1], b[2], b[3]])))
             .collect();
-        // In the order of the COUNT_* constants in shaders/pass/inputs.wgsl. Each pixel has one verdict.
+        // In the order of the COUNT_* constants in shaders/shared/inputs.wgsl. Each pixel has one verdict.
         let mut stats = Self {
             nonfinite: counts[0],
             bad_depth: counts[1],

@@ -21,7 +21,7 @@ pub const MAX_VIEWS: usize = 4;
 /// Numbers of the bindings of a frame's inputs and outputs are below this one.
 pub const ORIGINS: usize = 16;
 
-/// Twin of `ViewUniforms` in `shaders/pass/view_uniforms.wgsl`.
+/// Twin of `ViewUniforms` in `shaders/shared/view_uniforms.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
@@ -55,7 +55,7 @@ pub struct ViewUniforms {
 }
 
 /// Camera motion of a view, for pixels whose vectors lack it. Twin of `CameraUniforms` in
-/// `shaders/pass/inputs.wgsl`. Fields without a comment are those of `ViewMotion`.
+/// `shaders/shared/inputs.wgsl`. Fields without a comment are those of `ViewMotion`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
@@ -199,7 +199,7 @@ impl ViewUniforms {
         }
     }
 
-    /// `Foveation::region_angle_deg` of a ray. Twin: `shaders/pass/view_uniforms.wgsl`.
+    /// `Foveation::region_angle_deg` of a ray. Twin: `shaders/shared/view_uniforms.wgsl`.
     #[cfg(feature = "cpu")]
     #[inline(always)]
     pub(crate) fn region_angle_deg(&self, ray: Vec3) -> f32 {

@@ -4,7 +4,6 @@
 const TILE_PX: u32 = 16u;
 const HYPOTHESES: u32 = 25u;
 const DISTANCES: u32 = 7u;
-const DISPARITY_FACTORS: array<f32, DISTANCES> = array<f32, DISTANCES>(0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0);
 const BOUNDARIES: u32 = 5u;
 const KINKS: u32 = 4u;
 const WIDE: u32 = 3u;
@@ -76,6 +75,11 @@ fn spline(values: vec4f, t: f32) -> f32 {
     let second = interpolate(values.y, values.z, (t + 1.0) * (1.0f / 3.0f));
     let third = interpolate(values.z, values.w, t * (1.0f / 3.0f));
     return interpolate(interpolate(first, second, (t + 1.0) * 0.5), interpolate(second, third, t * 0.5), t);
+}
+
+// Factor on the disparities as described, of hypothesis `index` on distances: 1/8, 1/4, 1/2, 1, 2, 4 and 8.
+fn disparity_factor(index: u32) -> f32 {
+    return f32(1u << index) * 0.125;
 }
 
 // Component of a stored motion vector, limited in length.

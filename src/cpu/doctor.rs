@@ -1,7 +1,7 @@
 //! Checker of a renderer's inputs, on images in memory.
 
 use super::doctor_pass::{self, Examined};
-use super::{Frame, check_inputs};
+use super::frame::{Frame, check_inputs};
 use crate::context::ContextDesc;
 use crate::doctor::{Chart, Door, Finding, maps};
 use crate::error::{FrameError, SettingsError};

@@ -1,5 +1,5 @@
-//! Evidence on the inputs of a view. Twins: `shaders/pass/doctor_roots_pass.wgsl` ([`root_means`]) and
-//! `shaders/pass/doctor_pass.wgsl` ([`words`]).
+//! Evidence on the inputs of a view. Twins: `shaders/shared/doctor_roots_pass.wgsl` ([`root_means`]) and
+//! `shaders/shared/doctor_pass.wgsl` ([`words`]).
 
 use crate::doctor::{StillSurfaces, Tile};
 use crate::image::Image;
@@ -90,10 +90,10 @@ impl Examined<'_> {
         let ray = Vec2::new(px[0] as f32, px[1] as f32) * Vec2::from(still.ray_scale) + Vec2::from(still.ray_offset);
         let shown = lookup(self.now, at, level);
         words[PLACED as usize] += 1;
-        for (i, factor) in DISPARITY_FACTORS.into_iter().enumerate() {
-            let moved = camera_vector(ray, stored * factor, motion) + Vec2::from(still.jitter_px);
+        for i in 0..DISTANCES {
+            let moved = camera_vector(ray, stored * disparity_factor(i), motion) + Vec2::from(still.jitter_px);
             let predicted = lookup(self.past, [at[0] + moved.x * 0.5, at[1] + moved.y * 0.5], level);
-            words[DISTANCE_ERRORS as usize + i] += fixed((shown - predicted).abs());
+            words[(DISTANCE_ERRORS + i) as usize] += fixed((shown - predicted).abs());
         }
     }
 

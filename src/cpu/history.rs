@@ -1,7 +1,7 @@
 //! State between frames: the previous and the current frame's buffers, which swap after each frame.
 
-use super::Frame;
-use super::mip_chain::MipChain;
+use super::frame::Frame;
+use super::levels::mip_chain::MipChain;
 use crate::context::ContextDesc;
 use crate::method::HistoryLayout;
 use crate::resize::Resize;

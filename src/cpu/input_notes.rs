@@ -1,9 +1,9 @@
 //! Notes of what a frame gives for a pixel, before a pass reads it.
 
-use super::Frame;
+use super::frame::Frame;
 use super::history::History;
 use super::inputs::Inputs;
-use super::sparse_pass::Quads;
+use super::quads::Quads;
 use crate::context::ContextDesc;
 use crate::frame::Reset;
 use crate::kernel::depth::distance_of;

@@ -1,6 +1,7 @@
-//! Inputs of the pixels of one view, in internal conventions; shared by all methods. Twin: `shaders/pass/inputs.wgsl`.
+//! Inputs of the pixels of one view, in internal conventions; shared by all methods. Twin:
+//! `shaders/shared/inputs.wgsl`.
 
-use super::Frame;
+use super::frame::Frame;
 use crate::context::ContextDesc;
 use crate::convention::MotionConvention;
 use crate::foveation::Foveation;

@@ -6,32 +6,25 @@
 mod doctor;
 mod doctor_pass;
 mod explain;
-mod fill;
+mod frame;
 pub(crate) mod history;
 mod input_notes;
 mod inputs;
-mod mip_chain;
-mod none_pass;
+mod levels;
+mod pass;
 mod pixel;
-mod plan;
+mod planned;
+mod quads;
 mod resize;
-mod smr_pass;
-mod sparse_pass;
-mod surface_history;
-mod surface_pass;
-mod taa_pass;
-mod taau_pass;
-mod wrs_pass;
 
 // For this workspace's other crates, as `CpuAfterimage::process_traced`.
 #[doc(hidden)]
 pub use crate::kernel::debug_view::PixelTrace;
 pub use doctor::Doctor;
-use history::History;
+pub use frame::Frame;
 
 use crate::context::{ContextDesc, check_size};
 use crate::error::{FrameError, SettingsError};
-use crate::frame::FrameInputs;
 use crate::gaze::Gaze;
 use crate::geometry::ViewGeometry;
 use crate::image::Image;
@@ -40,41 +33,11 @@ use crate::notes::PixelNotes;
 use crate::resize::Resize;
 use crate::settings::Settings;
 use crate::stats::FrameStats;
-use crate::view::ViewFrame;
-use plan::Planned;
-
-/// A frame whose inputs are slices with one image a view; fields are at [`FrameInputs`].
-///
-/// ```
-/// # use afterimage::internal::ViewFrame;
-/// # use afterimage::Image;
-/// # fn example(left: &Image<[f32; 3]>, right: &Image<[f32; 3]>, views: &[ViewFrame], index: u64) {
-/// use afterimage::cpu::Frame;
-///
-/// let colors = [left, right];
-/// let frame = Frame::new(&colors, views, index);
-/// # let _ = frame;
-/// # }
-/// ```
-pub type Frame<'a> = FrameInputs<'a, &'a [&'a Image<[f32; 3]>], &'a [&'a Image<f32>], &'a [&'a Image<[f32; 2]>]>;
-
-impl<'a> Frame<'a> {
-    /// A frame without optional inputs, which continues the previous frame: no reset, unchanged exposure. `color`: one
-    /// image a view.
-    pub fn new(color: &'a [&'a Image<[f32; 3]>], views: &'a [ViewFrame], index: u64) -> Self {
-        Self::of_color(color, views, index)
-    }
-
-    /// This frame with another color input, whose lifetime may be shorter. `..*self` would not allow that.
-    fn with_color<'b>(&self, color: &'b [&'b Image<[f32; 3]>]) -> Frame<'b>
-    where
-        'a: 'b,
-    {
-        let Self { depth, motion, trust, reactive, lod, noise, albedo, mask, half, views, index, .. } = *self;
-        let (reset, exposure) = (self.reset, self.exposure);
-        Frame { color, depth, motion, trust, reactive, lod, noise, albedo, mask, half, views, index, reset, exposure }
-    }
-}
+use frame::{check_geometry, check_inputs, check_sizes};
+use history::History;
+use levels::{fill, none_pass, smr_pass, surface_pass, taa_pass, taau_pass, wrs_pass};
+use pass::{Alpha, Pass};
+use planned::Planned;
 
 /// The post-process on the CPU: a context with its settings and history.
 ///
@@ -96,26 +59,6 @@ pub struct CpuAfterimage {
     desc: ContextDesc,
     history: History,
     planned: Option<Planned>,
-}
-
-/// Arguments of a method's pass.
-struct Pass<'a, 'f> {
-    desc: &'a ContextDesc,
-    history: &'a mut History,
-    frame: &'a Frame<'f>,
-    /// Shaded quads, one a view; empty unless the frame is shaded by quads.
-    quads: &'a [sparse_pass::Quads],
-    output: &'a mut [Image<[f32; 3]>],
-    alpha: Option<Alpha<'a>>,
-    traces: Option<&'a mut [Image<PixelTrace>]>,
-    /// A pixel to explain.
-    noted: Option<&'a mut PixelNotes>,
-}
-
-/// Alpha of a frame's colors, which the renderer wrote, and of the output; one image a view each.
-struct Alpha<'a> {
-    given: &'a [&'a Image<f32>],
-    output: &'a mut [Image<f32>],
 }
 
 // For tests and the lab.
@@ -285,6 +228,62 @@ impl CpuAfterimage {
         self.run(frame, output, None, Some(traces), None)
     }
 
+    /// Pixels to shade of a [planned frame](crate::internal::Filter::Quads), one mask a view: quads of 2x2 pixels, or
+    /// [single pixels](crate::internal::Foveation::single_pixels). Give the frame to [`process`](Self::process) with a
+    /// color of the context's size, in which these pixels are shaded. Without history the plan is a quarter of the
+    /// pixels ([`is_quarter`](Self::is_quarter)), unless the foveation shades more.
+    ///
+    /// All quads of the fovea are chosen, an even pattern outside it that visits every quad in turn, and at most the
+    /// share [`Foveation::budget`](crate::internal::Foveation::budget) of a view's quads where history lacks most.
+    ///
+    /// Give it the frame that will be processed, with the parts that are known before shading: views, depth, motion,
+    /// trust or reactive mask, index and reset. Its colors and noise are not read, and the colors may be an empty
+    /// slice. History is unchanged: the same call gives the same masks.
+    ///
+    /// ```
+    /// use afterimage::cpu::{CpuAfterimage, Frame};
+    /// use afterimage::internal::{ContextDesc, Foveation, ViewFrame};
+    /// use afterimage::{Gaze, Image, ViewGeometry};
+    ///
+    /// let size = [64, 36];
+    /// let mut desc = ContextDesc::new(size);
+    /// desc.settings.foveation = Foveation::quads();
+    /// let mut post = CpuAfterimage::new(&desc)?;
+    /// let views = [ViewFrame::new(ViewGeometry::flat(size, 70.0)?, Gaze::At { px: [40.0, 18.0] })];
+    /// let masks = post.plan(&Frame::new(&[], &views, 0))?;
+    /// // Here the renderer shades the pixels of the mask.
+    /// let shaded = Image::filled(size, [0.5; 3]);
+    /// let mut shown = [Image::filled(size, [0.0; 3])];
+    /// post.process(&Frame::new(&[&shaded], &views, 0), &mut shown)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`FrameError`] if the foveation is not [`Quads`](crate::internal::Filter::Quads), and as for `process`.
+    pub fn plan(&mut self, frame: &Frame<'_>) -> Result<&[Image<bool>], FrameError> {
+        frame.check_plan(&self.desc)?;
+        check_geometry(&self.desc, frame)?;
+        check_sizes(&self.desc, "lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
+        Ok(&self.planned.insert(Planned::new(&self.desc, &self.history, frame)).masks)
+    }
+
+    /// Number of paths to trace at each pixel of the last [`plan`](Self::plan), one image a view: 0 where no path is
+    /// traced, at most 16; empty without a plan. With [`noisy`](crate::internal::Settings::noisy) a chosen pixel
+    /// outside the fovea has as many as take more off its squared error, history included, than others; the
+    /// [`budget`](crate::internal::Foveation::budget) counts all of them but the even pattern's first. Otherwise each
+    /// chosen pixel has one.
+    pub fn paths(&self) -> &[Image<u8>] {
+        self.planned.as_ref().map_or(&[], |planned| &planned.paths)
+    }
+
+    /// Whether the last [`plan`](Self::plan) chose one pixel of each quad outside the fovea, because nothing was known:
+    /// in the first frame and after a reset. These pixels can be drawn at half the width and height
+    /// ([`ViewGeometry::half`](crate::ViewGeometry::half)), and given so
+    /// ([`half`](crate::internal::FrameInputs::half)).
+    pub fn is_quarter(&self) -> bool {
+        self.planned.as_ref().is_some_and(|planned| planned.is_quarter)
+    }
+
     fn run(
         &mut self,
         frame: &Frame<'_>,
@@ -295,7 +294,7 @@ impl CpuAfterimage {
     ) -> Result<FrameStats, FrameError> {
         check_inputs(&self.desc, frame)?;
         frame.check_planned(&self.desc, self.planned.as_ref().map(|planned| planned.index))?;
-        let given = frame.mask.map(|masks| sparse_pass::given_quads(&self.desc, masks));
+        let given = frame.mask.map(|masks| planned::given_quads(&self.desc, masks));
         let planned = self.planned.as_ref().map(|planned| &planned.quads);
         let quads = given.as_ref().or(planned).map_or(&[][..], |quads| quads);
         check_sizes(&self.desc, "output", Some(output.iter().map(Image::size)))?;
@@ -318,7 +317,7 @@ impl CpuAfterimage {
             Algorithm::Taa => surface_pass::run(pass, &taa_pass::Taa),
             Algorithm::Taau => surface_pass::run(pass, &taau_pass::Taau),
             Algorithm::Smr => surface_pass::run(pass, &smr_pass::Smr::new(&self.desc.settings)),
-            Algorithm::SmrSparse => sparse_pass::run(pass),
+            Algorithm::SmrSparse => planned::run(pass),
             Algorithm::Wrs => wrs_pass::run(pass),
         };
         if let Some(pixel) = noted {
@@ -334,54 +333,4 @@ impl CpuAfterimage {
         }
         Ok(stats)
     }
-}
-
-/// Checks a frame without its outputs.
-fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
-    frame.check(desc)?;
-    check_sizes(desc, "color", Some(frame.color.iter().map(|i| i.size())))?;
-    let half = desc.size_px.map(|side| side.div_ceil(2));
-    check_sizes_of(desc, "half", frame.half.map(|h| h.iter().map(|i| i.size())), half)?;
-    check_geometry(desc, frame)?;
-    check_sizes(desc, "lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
-    check_sizes(desc, "albedo", frame.albedo.map(|a| a.iter().map(|i| i.size())))?;
-    check_sizes(desc, "mask", frame.mask.map(|m| m.iter().map(|i| i.size())))?;
-    check_sizes(desc, "noise", frame.noise.map(|n| n.iter().map(|i| i.size())))
-}
-
-/// Checks the sizes of the inputs that are known before a frame is shaded.
-fn check_geometry(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
-    check_sizes(desc, "depth", frame.depth.map(|d| d.iter().map(|i| i.size())))?;
-    check_sizes(desc, "motion", frame.motion.map(|m| m.iter().map(|i| i.size())))?;
-    check_sizes(desc, "trust", frame.trust.map(|t| t.iter().map(|i| i.size())))?;
-    check_sizes(desc, "reactive", frame.reactive.map(|r| r.iter().map(|i| i.size())))
-}
-
-/// Checks that an input, if given, has one image of the context's size for each view.
-fn check_sizes(
-    desc: &ContextDesc,
-    input: &'static str,
-    sizes: Option<impl ExactSizeIterator<Item = [u32; 2]>>,
-) -> Result<(), FrameError> {
-    check_sizes_of(desc, input, sizes, desc.size_px)
-}
-
-/// Checks that an input, if given, has one image of `expected` pixels for each view.
-fn check_sizes_of(
-    desc: &ContextDesc,
-    input: &'static str,
-    sizes: Option<impl ExactSizeIterator<Item = [u32; 2]>>,
-    expected_px: [u32; 2],
-) -> Result<(), FrameError> {
-    let Some(sizes) = sizes else { return Ok(()) };
-    let (found, expected) = (sizes.len(), desc.view_count as usize);
-    if found != expected {
-        return Err(FrameError::ViewCount { found, expected });
-    }
-    for (view, found) in sizes.enumerate() {
-        if found != expected_px {
-            return Err(FrameError::Size { input, view, found, expected: expected_px });
-        }
-    }
-    Ok(())
 }

@@ -1,4 +1,5 @@
-//! History resampled to another size. Twins: `shaders/pass/resize_{surfaces,reservoirs,sparse}_pass.wgsl`.
+//! History resampled to another size. Twins: `shaders/levels/resize_{surfaces,reservoirs}_pass.wgsl`,
+//! `shaders/planned/resize_sparse_pass.wgsl`.
 
 use crate::kernel::antialias::{Mean, mean_of, stored_lod};
 use crate::kernel::resample::{gather_around, resolve, sharp_sum, surface_tap, tap_codes, taps_around};

@@ -12,7 +12,7 @@ use super::shape::Shape;
 use crate::context::ContextDesc;
 use crate::convention::DepthConvention;
 use crate::kernel::depth::disparity;
-use crate::kernel::doctor::{DEPTHS, DISPARITY_FACTORS, DISTANCE_ERRORS, DISTANCES, PLACED, TILE_PX};
+use crate::kernel::doctor::{DEPTHS, DISTANCE_ERRORS, DISTANCES, PLACED, TILE_PX, disparity_factor};
 
 /// Least parallax of a tile in pixels, and number of such tiles.
 const PARALLAX_PX: f64 = 0.2;
@@ -155,9 +155,10 @@ fn by_pictures(
     // Neighbours must be worse: a camera that only turns shows no distances.
     let beside = [found.checked_sub(1), Some(found + 1).filter(|i| *i < ALL)].into_iter().flatten();
     let significance = beside.map(|i| better(found, i)).fold(f64::INFINITY, f64::min);
+    let factor = 1.0 / f64::from(disparity_factor(found as u32));
     let evidence = vec![
         ("tiles", tiles.len() as f64),
-        ("factor of the distances", 1.0 / f64::from(DISPARITY_FACTORS[found])),
+        ("factor of the distances", factor),
         ("significance over half and twice", significance),
         ("significance over the stated distances", if found == AS_STATED { 0.0 } else { better(found, AS_STATED) }),
     ];
@@ -171,7 +172,7 @@ fn by_pictures(
     if better(found, AS_STATED) < WRONG {
         return None;
     }
-    let line = nearer(desc, stated, 1.0 / f64::from(DISPARITY_FACTORS[found]), door);
+    let line = nearer(desc, stated, factor, door);
     Some(Finding::wrong(Check::Depth, Fault::DepthPlanes, confidence, evidence, line))
 }
 

@@ -18,7 +18,7 @@ use wgpu::{BindingResource, Buffer, BufferUsages, CommandEncoder, ComputePassDes
 /// Largest number of frames that may be recorded before the words of the first one are read.
 const PENDING: usize = 16;
 
-/// `DoctorUniforms` in `shaders/pass/doctor_pass.wgsl`.
+/// `DoctorUniforms` in `shaders/shared/doctor_pass.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct DoctorUniforms {

@@ -3,7 +3,7 @@
 //!
 //! A frame that was recorded may never run, because its encoder was dropped. So each set has the number of the frame
 //! that wrote it in a buffer on the device. A frame states in its uniforms which number it expects
-//! (`shaders/pass/past_frame.wgsl`), and starts without history if the device has another.
+//! (`shaders/shared/past_frame.wgsl`), and starts without history if the device has another.
 
 use super::binding::Binding;
 use super::groups::Resource;

@@ -8,7 +8,7 @@ use wgpu::{Buffer, BufferUsages, Device, TextureFormat, TextureUsages};
 
 /// Bytes of a list before its quads.
 const LIST_HEADER_BYTES: u64 = 32;
-/// Words of `QuadState` in `shaders/pass/quad_state.wgsl` before its arguments of dispatches.
+/// Words of `QuadState` in `shaders/planned/quad_state.wgsl` before its arguments of dispatches.
 const ARGUMENTS: u64 = 2 * KEYS as u64 + 3;
 const STATE_BYTES: u64 = 4 * (ARGUMENTS + 6);
 /// Place in the state of the arguments of a dispatch with an invocation for each pixel of shaded quads.
@@ -33,7 +33,7 @@ pub(super) struct Quads {
 
 #[derive(Debug)]
 pub(super) struct ViewQuads {
-    /// `QuadSize` in `shaders/pass/quad_mask_pass.wgsl`.
+    /// `QuadSize` in `shaders/planned/quad_mask_pass.wgsl`.
     pub uniforms: Buffer,
     pub state: Buffer,
     pub list: Buffer,

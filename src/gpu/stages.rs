@@ -1,14 +1,13 @@
 //! Passes of a frame: the stages that the table of methods lists, in their order.
 
 use super::compute::{ComputeShader, Sources};
-use super::fill::Fill;
 use super::history::History;
+use super::levels::fill::{self, Fill};
+use super::levels::mip_chain::{CandidatePass, MipChainPass};
 use super::method_pass::MethodPass;
-use super::mip_chain::{CandidatePass, MipChainPass};
-use super::quad_samples::QuadSamplePasses;
+use super::planned::quad_samples::{self, QuadSamplePasses};
 use super::recorder::Recorder;
 use super::stage::{Job, Passes, Specialization};
-use super::{fill, quad_samples};
 use crate::context::ContextDesc;
 use crate::method::{Overrides, Stage};
 use wgpu::{Device, TextureFormat};

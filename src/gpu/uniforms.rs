@@ -9,10 +9,10 @@ pub use crate::uniforms::{CameraUniforms, ViewUniforms};
 use crate::uniforms::{MAX_VIEWS, ViewState};
 use bytemuck::{Pod, Zeroable};
 
-/// `NO_FRAME` in `shaders/pass/inputs.wgsl`: the number of no frame.
+/// `NO_FRAME` in `shaders/shared/inputs.wgsl`: the number of no frame.
 pub(super) const NO_FRAME: u32 = u32::MAX;
 
-/// `FrameUniforms` in `shaders/pass/inputs.wgsl`.
+/// `FrameUniforms` in `shaders/shared/inputs.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct FrameUniforms {

@@ -1,6 +1,6 @@
 //! Evidence on the inputs of a renderer, tile by tile: the prediction errors of hypotheses on its motion vectors and
-//! distances, and the fineness of the frame's detail. Words of a tile are integers, so that their sums do not depend on the order of
-//! the pixels.
+//! distances, and the fineness of the frame's detail. Words of a tile are integers, so that their sums do not depend on
+//! the order of the pixels.
 
 use super::sanitize;
 
@@ -10,8 +10,6 @@ pub const TILE_PX: u32 = 16;
 pub const HYPOTHESES: u32 = 25;
 /// Number of hypotheses on distances.
 pub const DISTANCES: u32 = 7;
-/// Hypotheses on distances: factors on the disparities as described.
-pub const DISPARITY_FACTORS: [f32; DISTANCES as usize] = [0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0];
 /// Classes of boundaries between pixels: multiples of 1, 2, 4, 8, and 16 or more.
 pub const BOUNDARIES: u32 = 5;
 /// Classes of kinks: those of boundaries without the first.
@@ -113,6 +111,12 @@ pub fn spline(values: [f32; 4], t: f32) -> f32 {
     let second = interpolate(b, c, (t + 1.0) * (1.0 / 3.0));
     let third = interpolate(c, d, t * (1.0 / 3.0));
     interpolate(interpolate(first, second, (t + 1.0) * 0.5), interpolate(second, third, t * 0.5), t)
+}
+
+/// Factor on the disparities as described, of hypothesis `index` on distances: 1/8, 1/4, 1/2, 1, 2, 4 and 8.
+#[inline]
+pub fn disparity_factor(index: u32) -> f32 {
+    (1_u32 << index) as f32 * 0.125
 }
 
 /// Component of a stored motion vector, limited in length.

@@ -1,23 +1,17 @@
 //! Methods: name, history layout and passes of each.
 //!
 //! To add one, write a variant of [`Method`] and of [`MethodKind`], its arms and a file with its [`Entry`] here, its
-//! passes in `cpu/` and in `shaders/pass/`, and tests.
+//! passes in `cpu/levels/` and in `shaders/levels/`, and tests.
 
 #![cfg_attr(not(all(feature = "cpu", feature = "gpu")), allow(dead_code, reason = "each executor reads its part"))]
 
-mod none;
-mod smr;
-mod smr_sparse;
-mod taa;
-mod taau;
-mod wrs;
+mod levels;
+pub(crate) mod planned;
 
-pub(crate) use smr::smr_params;
+pub(crate) use levels::smr::smr_params;
 #[cfg(feature = "cpu")]
-pub(crate) use smr_sparse::{smr_sparse_antialiases, smr_sparse_relights};
-#[cfg(feature = "cpu")]
-pub(crate) use wrs::has_references;
-pub(crate) use wrs::{inv_density_at_fovea, wrs_params};
+pub(crate) use levels::wrs::has_references;
+pub(crate) use levels::wrs::{inv_density_at_fovea, wrs_params};
 
 use crate::foveation::Filter;
 use crate::settings::{Method, MethodKind, Settings, Smr, Wrs};
@@ -43,11 +37,11 @@ impl MethodKind {
 
     fn entry(self) -> &'static Entry {
         match self {
-            Self::None => &none::ENTRY,
-            Self::Taa => &taa::ENTRY,
-            Self::Smr => &smr::ENTRY,
-            Self::Wrs => &wrs::ENTRY,
-            Self::Taau => &taau::ENTRY,
+            Self::None => &levels::none::ENTRY,
+            Self::Taa => &levels::taa::ENTRY,
+            Self::Smr => &levels::smr::ENTRY,
+            Self::Wrs => &levels::wrs::ENTRY,
+            Self::Taau => &levels::taau::ENTRY,
         }
     }
 }
@@ -140,14 +134,14 @@ pub(crate) struct Entry {
     /// Memory traffic of history and noise, in bytes a pixel.
     pub history_traffic_bytes: fn(&Settings) -> u32,
     pub shader: fn(&Settings) -> PassShader,
-    /// Values of the shaders' own overrides, in addition to those of `shaders/pass/inputs.wgsl`.
+    /// Values of the shaders' own overrides, in addition to those of `shaders/shared/inputs.wgsl`.
     pub overrides: fn(&Settings) -> Overrides,
 }
 
 /// Shader of a method's pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PassShader {
-    /// Name of a module of `shaders/pass/`.
+    /// Name of a module of `shaders/planned/` or `shaders/levels/`.
     pub name: &'static str,
     /// Edge in pixels of the block that an invocation processes.
     pub block_px: u32,
@@ -188,7 +182,7 @@ impl Settings {
     /// The entry of these settings. smr on planned frames is an algorithm of its own.
     fn entry(&self) -> &'static Entry {
         match self.method {
-            Method::Smr(_) if self.foveation.filter == Filter::Quads => &smr_sparse::ENTRY,
+            Method::Smr(_) if self.foveation.filter == Filter::Quads => &planned::ENTRY,
             method => method.kind().entry(),
         }
     }

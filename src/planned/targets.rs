@@ -82,8 +82,8 @@ impl Targets {
         Frame { motion: self.motion.as_ref(), ..Frame::new(&self.depth, camera) }
     }
 
-    /// A pass that draws depth and, if there are any, motion vectors of a view. Both are cleared, depth to the far plane
-    /// of the camera, vectors to 0.
+    /// A pass that draws depth and, if there are any, motion vectors of a view. Both are cleared, depth to the far
+    /// plane of the camera, vectors to 0.
     pub fn prepass<'e>(&self, encoder: &'e mut CommandEncoder, view: usize, camera: &Camera) -> RenderPass<'e> {
         let motion = self.motion.as_ref().map(|motion| (motion, LoadOp::Clear(Color::TRANSPARENT)));
         let far = if camera.is_reversed() { 0.0 } else { 1.0 };

@@ -29,6 +29,7 @@ pub const PROBES: &[Probe] = &[
     probe!(doctor::fixed, |rows| rows
         .cross(&[&[floats(&[0.0, 64.0]), around(&[1.0, 0.5, 4.7683716e-7])].concat()])
         .each(&[Scaled(-26, 6)])),
+    probe!(doctor::disparity_factor, |rows| rows.cross(&[&(0..7).collect::<Vec<_>>()])),
     probe!(doctor::kink_class, |rows| rows.cross(&[&(0..300).collect::<Vec<_>>()])),
     probe!(doctor::bend, |rows| rows.random(|d, row| signals(d, row, 3))),
     probe!(doctor::is_code, |rows| {

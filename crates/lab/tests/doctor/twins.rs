@@ -160,7 +160,7 @@ fn errors_planted_in_the_shader_are_caught() {
     ];
     let objects = Given { without_camera: true, ..ALL };
     let of_distances = [
-        ("stored * factors[i]", "stored * factors[DISTANCES - 1u - i]"),
+        ("stored * disparity_factor(i)", "stored * disparity_factor(DISTANCES - 1u - i)"),
         ("frame.camera) + frame.jitter_px", "frame.camera)"),
         ("stored <= frame.camera.sky", "stored < 0.0"),
         ("at.y + moved.y * 0.5", "at.y + moved.y"),

@@ -10,6 +10,7 @@ mod page_tables;
 mod paths;
 mod properties;
 mod prose;
+mod rooms;
 mod shader_comments;
 mod shader_names;
 mod shader_tables;

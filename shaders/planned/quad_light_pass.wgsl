@@ -1,0 +1,183 @@
+//#use antialias
+//#use past_frame
+//#use quad_plan
+//#use quad_samples
+// Gain and fit of history around shaded quads. CPU twin: `light_quad` in src/cpu/planned/quad_samples.rs. One
+// invocation a shaded quad; those of the fovea are not compared.
+//
+// 112 reads and 1 write a quad: color, depth and observation of its own pixels and of those of eight quads around it,
+// and its neighbours; 16 bytes written. Where light changes the reads are made twice.
+
+override RELIGHT_ON: u32 = 1u;
+override ANTIALIAS: u32 = 0u;
+
+@group(0) @binding(21) var observed: texture_2d_array<u32>;
+@group(0) @binding(23) var lights_out: texture_storage_2d_array<rgba32uint, write>;
+
+fn observation_at(px: vec2u, view: u32) -> Observation {
+    let words = textureLoad(observed, px, view, 0).xy;
+    let sampled = color(sample_at(px, view).xyz).color;
+    let known = words.y >> 16u;
+    return Observation(
+        sampled,
+        unpack_color(words.x),
+        half_value(words.y),
+        known_confidence(known),
+        known_deviation(known),
+    );
+}
+
+fn is_alike(own_disparity: f32, px: vec2u, view: u32) -> bool {
+    return DEPTH_TEST == 0u || same_surface(own_disparity, disparity_at(px, view), LIGHT_RELATIVE, 0.0);
+}
+
+// Whether a pixel of a quad is in the frame and was compared with history.
+fn is_compared(px: vec2u, view: u32) -> bool {
+    return all(px < frame.size) && half_value(textureLoad(observed, min(px, frame.size - 1u), view, 0).y) >= 0.0;
+}
+
+// The quad's own comparison: a mean of those of one surface, that of its first compared pixel. Its error is negative
+// without one.
+struct Own {
+    observation: Observation,
+    disparity: f32,
+}
+
+fn own_of(quad: vec2u, view: u32) -> Own {
+    var first = 4u;
+    for (var left = 4u; left > 0u; left--) {
+        first = select(first, left - 1u, is_compared(px_of_quad(quad, left - 1u), view));
+    }
+    let disparity_now = disparity_at(px_of_quad(quad, first & 3u), view);
+    var sum = ObservedAround(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    var confidence = 0.0;
+    let taps = select(4u, 0u, first == 4u);
+    for (var i = 0u; i < taps; i++) {
+        let px = px_of_quad(quad, i);
+        if is_compared(px, view) && is_alike(disparity_now, px, view) {
+            let o = observation_at(px, view);
+            sum = add_observation(sum, o, 1.0, 1.0);
+            confidence += o.confidence;
+        }
+    }
+    let inverse = 1.0 / max(sum.weight, 1.0);
+    let error = select(sum.error * inverse, -1.0, sum.weight == 0.0);
+    let deviation = sum.deviation * inverse;
+    let own = Observation(sum.sampled * inverse, sum.history * inverse, error, confidence * inverse, deviation);
+    return Own(own, disparity_now);
+}
+
+struct Neighbour {
+    observation: Observation,
+    weight: f32,
+    spatial: f32,
+}
+
+// Pixel `tap` of 36: four of each of the eight quads around, then the quad's own. Its weight is 0 if it shows nothing
+// about the light at the quad.
+fn neighbour_at(tap: u32, quad: vec2u, view: u32, own: Own, around: vec2u, least: f32) -> Neighbour {
+    let code = select(code_of(around, tap >> 2u), NOWHERE, tap >= 32u);
+    let offset = neighbour_offset(code);
+    let px = px_of_quad(vec2u(vec2i(quad) + offset), tap & 3u);
+    var near = Neighbour(Observation(vec3f(0.0), vec3f(0.0), -1.0, 0.0, 0.0), 0.0, 0.0);
+    let is_there = code != NOWHERE || tap >= 32u;
+    if !is_there || !is_compared(px, view) || !is_alike(own.disparity, px, view) {
+        return near;
+    }
+    near.observation = observation_at(px, view);
+    near.spatial = 1.0 / (1.0 + f32(offset.x * offset.x + offset.y * offset.y) / least);
+    near.weight = near.spatial * near.observation.confidence;
+    if own.observation.error >= 0.0 {
+        near.weight = agreement(own.observation, near.observation, near.spatial);
+    }
+    return near;
+}
+
+fn light(quad: vec2u, view: u32) -> vec4u {
+    let around = textureLoad(quad_around, quad, view, 0).xy;
+    let own = own_of(quad, view);
+    var least = 0x1p126;
+    for (var i = 0u; i < 8u; i++) {
+        let code = code_of(around, i);
+        let offset = neighbour_offset(code);
+        least = select(least, min(least, f32(offset.x * offset.x + offset.y * offset.y)), code != NOWHERE);
+    }
+    var sum = ObservedAround(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    var without = 0.0;
+    var votes = vec2f(0.0);
+    var scatter = 0.0;
+    // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
+    let is_compared_quad = level_of(textureLoad(quad_mask, quad, view, 0).x) > 0u;
+    let taps = select(0u, 36u, has_history() && is_compared_quad);
+    for (var tap = 0u; tap < taps; tap++) {
+        let near = neighbour_at(tap, quad, view, own, around, least);
+        if near.spatial > 0.0 {
+            sum = add_observation(sum, near.observation, near.weight, near.spatial);
+            let errors = errors_left(near.observation, vec3f(1.0));
+            without += errors * near.weight;
+            if tap < 32u {
+                votes += vote(near.observation, errors, near.spatial);
+            }
+            if ANTIALIAS != 0u {
+                let difference = min(root_difference(near.observation.sampled, near.observation.history), 1e6);
+                scatter += (difference * difference) * near.weight;
+            }
+        }
+    }
+    var lit = QuadLit(vec3f(1.0), 1.0, vec4f(1.0), own.observation.error >= 0.0, vec4f(INVALID_DISPARITY));
+    if sum.weight >= 1e-6 {
+        if RELIGHT_ON != 0u {
+            var error = mean_error(sum);
+            if ANTIALIAS != 0u {
+                error = scattered_error(sum, scatter);
+            }
+            lit.gains = relight(sum, error);
+        }
+        let is_relit = any(lit.gains != vec3f(1.0));
+        var with_gain = 0.0;
+        for (var tap = 0u; tap < select(0u, taps, is_relit); tap++) {
+            let near = neighbour_at(tap, quad, view, own, around, least);
+            if near.spatial > 0.0 {
+                with_gain += errors_left(near.observation, lit.gains) * near.weight;
+            }
+        }
+        if !is_relit || with_gain > without * RELIT_ERRORS {
+            lit.gains = vec3f(1.0);
+            with_gain = without;
+        }
+        var fit_of_quad = 0.0;
+        if own.observation.error >= 0.0 {
+            fit_of_quad = own_fit(own.observation, vec3f(1.0));
+        }
+        lit.fit = fit_around(sum, with_gain, fit_by_votes(sum, votes, fit_of_quad));
+        if NOISY != 0u {
+            let confidence = min(sum.weight / sum.spatial, 1.0);
+            lit.fit = min(fit(with_gain / sum.weight, confidence), mean_fit(sum, confidence));
+        }
+    }
+    for (var i = 0u; i < 4u; i++) {
+        let px = px_of_quad(quad, i);
+        if all(px < frame.size) {
+            // Not `lit.disparities[i] = ...`: FXC, which wgpu has on Windows without another compiler, cannot write
+            // vectors so.
+            let is_i = vec4u(0u, 1u, 2u, 3u) == vec4u(i);
+            lit.disparities = select(lit.disparities, vec4f(disparity_at(px, view)), is_i);
+            // A single noisy sample does not show whether history fits.
+            if NOISY == 0u && is_compared(px, view) {
+                let fits = own_fit(observation_at(px, view), lit.gains);
+                lit.own_fits = select(lit.own_fits, vec4f(fits), is_i);
+            }
+        }
+    }
+    return pack_quad_lit(lit);
+}
+
+@compute @workgroup_size(64, 1)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) invocation: u32) {
+    let view = frame.first_view;
+    let i = invocation_of(group, invocation);
+    if i < quad_count() {
+        let quad = listed_quad(i);
+        textureStore(lights_out, quad, view, light(quad, view));
+    }
+}

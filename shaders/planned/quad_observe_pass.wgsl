@@ -1,0 +1,57 @@
+//#use sparse_history
+//#use sparse_noise
+//#use quad_plan
+//#use quad_samples
+// Comparison of shaded quads with history. CPU twin: `observe_quads` in src/cpu/planned/quad_samples.rs. One
+// invocation a pixel of a shaded quad; those of the fovea are not compared.
+//
+// With ANTIALIAS 29 reads and 1 write a sample: color, 9 of depth, 3 of motion, trust, 10 stored samples, list and
+// mask; 8 bytes written.
+
+@group(0) @binding(23) var observed_out: texture_storage_2d_array<rg32uint, write>;
+
+fn observe(px: vec2u, view: u32) -> vec2u {
+    let nothing = vec2u(0u, half_bits(-1.0));
+    let mask_word = mask_at(px, view);
+    let level = level_of(mask_word);
+    if level == 0u || !is_shaded(mask_word, px) {
+        return nothing;
+    }
+    let surface = surface_of(px, view, level);
+    var source = sparse_source(px, view, surface);
+    if ANTIALIAS != 0u {
+        // History is read at the sample's place in its pixel.
+        source.previous.at -= frame.views[view].jitter_px;
+    }
+    // At a silhouette the difference does not say whether anything changed.
+    let comparable = color(sample_at(px, view).xyz).usable && !surface.is_silhouette;
+    let needed = may_have_history(source.previous) && comparable;
+    let found = sparse_history(source, view, needed, past_albedos(px, view));
+    let history = found.found;
+    if !needed || history.lod < 0.0 {
+        return nothing;
+    }
+    let contrast = root_difference(history.lowest, history.highest);
+    let compared = comparison(found, contrast, surface.motion);
+    var error = compared.error;
+    var confidence = lod_confidence(history.lod);
+    if NOISY != 0u {
+        let past = stored_noise(found.texel, view);
+        error += expected_noise(past, noise_at(px, view), luma(history.color));
+        confidence = noisy_lod_confidence(history.lod, past, luma(history.color));
+    }
+    let known = pack_known(confidence, compared.deviation);
+    return vec2u(pack_color(history.color), half_bits(error) | (known << 16u));
+}
+
+@compute @workgroup_size(64, 1)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) invocation: u32) {
+    let view = frame.first_view;
+    let i = invocation_of(group, invocation);
+    if i < 4u * quad_count() {
+        let px = px_of_quad(listed_quad(i >> 2u), i & 3u);
+        if all(px < frame.size) {
+            textureStore(observed_out, px, view, vec4u(observe(px, view), 0u, 0u));
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//#use each_pixel
+//#use quad_samples
+//#use sparse_pixel
+// Reconstruction of frames shaded by quads: candidates of pixels from the shaded quads around them. CPU twin:
+// `quad_candidate` in src/cpu/planned/quad_samples.rs.
+
+@group(0) @binding(21) var lights: texture_2d_array<u32>;
+
+// Squared distance in pixels that stands for a missing sample.
+const NO_PX2: f32 = 1e30;
+
+// Mean of the samples around a noisy pixel with a sample, its own included, and the mean variance of one.
+fn mean_around(around: AroundPixel, px: vec2u, view: u32, codes: vec2u) -> vec4f {
+    var sum = vec3f(0.0);
+    var variance = 0.0;
+    var weights = 0.0;
+    // A variable count on purpose, as below.
+    let taps = select(0u, 12u, around.count > 0u);
+    for (var tap = 0u; tap < taps; tap++) {
+        let sample = noisy_tap(around, tap, px, view);
+        let at = min(sample.at, frame.size - 1u);
+        let sampled = color(sample_at(at, view).xyz);
+        let words = textureLoad(lights, at >> vec2u(1u), view, 0);
+        let place = (at.x & 1u) | ((at.y & 1u) << 1u);
+        let same = DEPTH_TEST == 0u || has_code(quad_code(words, place), codes);
+        if sample.is_there && sampled.usable && (same || all(at == px)) {
+            let x = f32(at.x) - f32(px.x);
+            let y = f32(at.y) - f32(px.y);
+            let noise = noise_at(at, view);
+            let share = noisy_share(noise.samples, x * x + y * y);
+            sum += sampled.color * share;
+            variance += noise.variance * share;
+            weights += share;
+        }
+    }
+    let inverse = 1.0 / weights;
+    return vec4f(sum * inverse, variance * inverse);
+}
+
+// Candidate from the samples that stand for a pixel.
+fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Candidate {
+    let around = around_pixel(px, view, mask_word);
+    let coarsest = f32(level_of(mask_word));
+    let codes = codes_between(disparity_now, 1.0f - SAMPLE_RELATIVE, 1.0f / (1.0f - SAMPLE_RELATIVE));
+    var candidate = no_candidate();
+    candidate.lowest = vec3f(MAX_HALF);
+    var sum = vec4f(0.0);
+    var weights = 0.0;
+    var gain_sum = vec3f(0.0);
+    var fit_sum = 0.0;
+    var valid_sum = 0.0;
+    var nearest_px2 = NO_PX2;
+    var own = vec4f(0.0);
+    var own_fits = 1.0;
+    var noises = NoiseSum(0.0, 0.0, 0.0);
+    var albedos = sample_albedos(px, view);
+    // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
+    let taps = select(0u, around.count, coarsest > 0.0);
+    for (var tap = 0u; tap < taps; tap++) {
+        let sample = sample_tap(around, tap, px, view);
+        let at = min(sample.at, frame.size - 1u);
+        let given = sample_at(at, view);
+        let sampled = color(given.xyz);
+        if sample.is_there && sampled.usable {
+            let words = textureLoad(lights, at >> vec2u(1u), view, 0);
+            let place = (at.x & 1u) | ((at.y & 1u) << 1u);
+            let lit = quad_lit(words, place);
+            let same = DEPTH_TEST == 0u || has_code(quad_code(words, place), codes);
+            let is_own = all(at == px);
+            let x = f32(at.x) - f32(px.x);
+            let y = f32(at.y) - f32(px.y);
+            let px2 = x * x + y * y;
+            let weight = select(1.0 / max(px2, 1.0), 1.0, is_own) * select(OTHER_SURFACE, 1.0, same);
+            let known = weight * select(BY_NEIGHBOURS, 1.0, lit.is_own);
+            let alpha = usable_alpha(given.w);
+            sum += vec4f(sampled.color, alpha) * weight;
+            weights += weight;
+            gain_sum += lit.gains * known;
+            fit_sum += lit.fit * known;
+            valid_sum += known;
+            candidate.lowest = min(candidate.lowest, sampled.color);
+            candidate.highest = max(candidate.highest, sampled.color);
+            let is_nearer = same && px2 < nearest_px2;
+            nearest_px2 = select(nearest_px2, px2, is_nearer);
+            candidate.beside = select(candidate.beside, sampled.color, is_nearer);
+            if HAS_ALBEDO {
+                albedos = with_sample(albedos, at, view, sampled.color, weight);
+            }
+            if NOISY != 0u {
+                noises = add_noise(noises, noise_at(at, view), weight);
+            }
+            if is_own {
+                candidate.is_own = true;
+                own = vec4f(sampled.color, alpha);
+                own_fits = lit.own_fit;
+            }
+        }
+    }
+    if weights == 0.0 {
+        return no_candidate();
+    }
+    let mean = sum * (1.0 / weights);
+    let known = 1.0 / valid_sum;
+    let lod = select(candidate_level(sqrt(nearest_px2), coarsest), coarsest + 1.0, nearest_px2 == NO_PX2);
+    candidate.color = select(mean.xyz, own.xyz, candidate.is_own);
+    candidate.alpha = select(mean.w, own.w, candidate.is_own);
+    candidate.usable = true;
+    candidate.is_beside = nearest_px2 <= BESIDE_PX2;
+    candidate.lod = select(lod, 0.0, candidate.is_own);
+    candidate.gains = gain_sum * known;
+    candidate.fit = min(fit_sum * known, own_fits);
+    if HAS_ALBEDO {
+        let has_surface = nearest_px2 != NO_PX2;
+        albedos = with_change(albedos, candidate.is_own, has_surface);
+        candidate.color *= albedos.factor;
+        candidate.lowest *= albedos.factor;
+        candidate.highest *= albedos.factor;
+        candidate.beside *= albedos.factor;
+        candidate.albedos = albedos;
+    }
+    if NOISY != 0u {
+        candidate.noise = mean_noise(noises);
+        if candidate.is_own {
+            candidate.noise = noise_at(px, view);
+            candidate.around = mean_around(around, px, view, codes);
+        }
+    }
+    return candidate;
+}
+
+// Candidate of a pixel in the fovea.
+fn full_rate_candidate(px: vec2u, view: u32, mask_word: u32) -> Candidate {
+    let given = sample_at(px, view);
+    let own = color(given.xyz);
+    let usable = own.usable && is_shaded(mask_word, px);
+    var candidate = no_candidate();
+    candidate.color = select(vec3f(0.0), own.color, usable);
+    candidate.alpha = select(1.0, usable_alpha(given.w), usable);
+    candidate.usable = usable;
+    candidate.is_own = usable;
+    if HAS_ALBEDO && usable {
+        candidate.albedos = with_change(sample_albedos(px, view), true, true);
+    }
+    return candidate;
+}
+
+// Sums over the nine pixels around a pixel of the fovea with the sample `own`, as far as they are shaded; without any
+// unless `needed`. A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
+fn samples_near(px: vec2u, view: u32, own: vec3f, needed: bool) -> Near {
+    let place_px = -frame.views[view].jitter_px;
+    var near = Near(vec3f(0.0), vec3f(0.0), 0.0, vec3f(0.0), 0.0);
+    let taps = select(0u, 9u, needed);
+    for (var tap = 0u; tap < taps; tap++) {
+        let offset = vec2u(tap % 3u, tap / 3u);
+        let at = clamp(px + offset, vec2u(1u), frame.size) - 1u;
+        let sampled = color(sample_at(at, view).xyz);
+        if sampled.usable && is_shaded(mask_at(at, view), at) {
+            near = add_near(near, sampled.color, own, (vec2f(offset) - 1.0) + place_px);
+        }
+    }
+    return near;
+}
+
+fn pixel(px: vec2u, view: u32) {
+    if !is_seen(px, view) {
+        hidden_pixel(px, view);
+        return;
+    }
+    let disparity_now = disparity_at(px, view);
+    let mask_word = mask_at(px, view);
+    let level = level_of(mask_word);
+    var candidate = candidate_at(px, view, mask_word, disparity_now);
+    if level == 0u {
+        candidate = full_rate_candidate(px, view, mask_word);
+    }
+    let is_near = ANTIALIAS != 0u && candidate.is_own && level == 0u;
+    let near = samples_near(px, view, candidate.color, is_near);
+    show_pixel(px, view, level, disparity_now, candidate, near);
+}

@@ -1,0 +1,228 @@
+//! Samples of shaded quads: their comparison with history, gain and fit around them, and candidates of pixels.
+
+use super::candidate::{Candidate, Sums, note_sample, sample_codes};
+use super::light::{Neighbour, observed_around, votes};
+use super::observe::{pack_observation, unpack_observation};
+use super::view::{Samples, View};
+use crate::cpu::quads::{Quads, offset_px2};
+use crate::kernel::demodulation::{AlbedoChange, add_albedo, candidate_change, no_albedos};
+use crate::kernel::depth::INVALID_DISPARITY;
+use crate::kernel::noise::{NoiseSum, add_noise, mean_noise, noisy_share};
+use crate::kernel::quads::WHOLE;
+use crate::kernel::resample::has_code;
+use crate::kernel::sanitize;
+use crate::kernel::sparse_smr::{
+    LIGHT_RELATIVE, Observation, ObservedAround, QuadLit, add_observation, agreement, fit, fit_around, fit_by_votes,
+    mean_fit, own_fit, pack_quad_lit, quad_code, quad_lit,
+};
+use crate::notes::Notes;
+use crate::parallel::collect;
+use glam::Vec3;
+
+/// Light of the shaded quads, quad by quad ([`pack_quad_lit`]).
+pub(super) type QuadLights = Vec<[u32; 4]>;
+
+impl View<'_> {
+    /// Pixels of a quad inside the frame.
+    #[inline(always)]
+    fn pixels_of(&self, [x, y]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> + use<> {
+        let [width, height] = self.inputs.size;
+        (0..4).map(move |i| [2 * x + i % 2, 2 * y + i / 2]).filter(move |px| px[0] < width && px[1] < height)
+    }
+
+    /// Color of a pixel, and whether it is usable.
+    #[inline(always)]
+    pub(super) fn color_px(&self, quads: &Quads, px: [u32; 2]) -> (Vec3, bool) {
+        let is_whole = quads.mask(px.map(|v| v / 2)) == WHOLE;
+        sanitize::color(if is_whole { self.inputs.color_at(px) } else { self.inputs.partial_color_at(px) })
+    }
+
+    /// Comparisons of the pixels of shaded quads outside the fovea, pixel by pixel.
+    pub(super) fn observe_quads(&self, quads: &Quads) -> Samples {
+        let [width, height] = self.inputs.size;
+        collect(width * height, |i| {
+            let px = [i % width, i / width];
+            let level = quads.level_at(px);
+            if level == 0 || !quads.is_shaded(px) {
+                return pack_observation(None);
+            }
+            let (sampled, usable) = self.color_px(quads, px);
+            pack_observation(self.observe_px(px, level, sampled, usable))
+        })
+    }
+
+    #[inline(always)]
+    fn observation_px(&self, quads: &Quads, px: [u32; 2], observed: &Samples) -> Option<Observation> {
+        unpack_observation(observed[(px[1] * self.inputs.size[0] + px[0]) as usize], || self.color_px(quads, px).0)
+    }
+
+    /// Gain and fit around each shaded quad. Quads of the fovea are not compared.
+    pub(super) fn light_quads(&self, quads: &Quads, observed: &Samples) -> QuadLights {
+        let [columns, rows] = quads.size();
+        collect(columns * rows, |i| {
+            let quad = [i % columns, i / columns];
+            if quads.mask(quad) != 0 { self.light_quad(quads, quad, observed) } else { [0; 4] }
+        })
+    }
+
+    fn light_quad(&self, quads: &Quads, quad: [u32; 2], observed: &Samples) -> [u32; 4] {
+        // The quad's own comparison is a mean of those of one surface: that of its first compared pixel.
+        let first = self.pixels_of(quad).find(|&px| self.observation_px(quads, px, observed).is_some());
+        let disparity_of = |[x, y]: [u32; 2]| self.inputs.disparity(x, y);
+        let disparity = disparity_of(first.unwrap_or(quad.map(|v| 2 * v)));
+        let alike = |px: [u32; 2]| self.alike(disparity, disparity_of(px), LIGHT_RELATIVE);
+        let mut own: Option<Observation> = None;
+        if first.is_some() {
+            let all =
+                self.pixels_of(quad).filter(|&px| alike(px)).filter_map(|px| self.observation_px(quads, px, observed));
+            let mut sum = ObservedAround::default();
+            let mut confidence = 0.0;
+            for o in all {
+                sum = add_observation(sum, o, 1.0, 1.0);
+                confidence += o.confidence;
+            }
+            let inverse = 1.0 / sum.weight;
+            own = Some(Observation {
+                sampled: sum.sampled * inverse,
+                history: sum.history * inverse,
+                error: sum.error * inverse,
+                confidence: confidence * inverse,
+                deviation: sum.deviation * inverse,
+            });
+        }
+        let distance2 = |other: [u32; 2]| offset_px2(other[0], quad[0]) + offset_px2(other[1], quad[1]);
+        let least = quads.around(quad).map(distance2).fold(f32::MAX, f32::min);
+        let mut near: Vec<Neighbour> = vec![];
+        let is_compared = quads.level_at(quad.map(|v| 2 * v)) > 0;
+        let mut others = 0;
+        for other in quads.around(quad).chain([quad]).filter(|_| is_compared) {
+            others = near.len();
+            let spatial = 1.0 / (1.0 + distance2(other) / least);
+            for px in self.pixels_of(other) {
+                let Some(observation) = self.observation_px(quads, px, observed) else { continue };
+                if alike(px) {
+                    let weight =
+                        own.map_or(spatial * observation.confidence, |own| agreement(own, observation, spatial));
+                    near.push((observation, weight, spatial));
+                }
+            }
+        }
+        let near = || near.iter().copied();
+        let around = observed_around(near());
+        // A single noisy sample does not show whether history fits.
+        let fit_of_own = |o, gain| if self.is_noisy { 1.0 } else { own_fit(o, gain) };
+        let (mut gain, mut fits) = (Vec3::ONE, 1.0);
+        if around.weight >= 1e-6 {
+            let (relit, left) = self.relit_around(around, near);
+            gain = relit;
+            fits = if self.is_noisy {
+                let confidence = (around.weight / around.spatial).min(1.0);
+                fit(left / around.weight, confidence).min(mean_fit(around, confidence))
+            } else {
+                let fit_of_quad = own.map_or(0.0, |own| own_fit(own, Vec3::ONE));
+                fit_around(around, left, fit_by_votes(around, votes(near().take(others)), fit_of_quad))
+            };
+        }
+        let mut own_fits = [1.0; 4];
+        let mut disparities = [INVALID_DISPARITY; 4];
+        for px in self.pixels_of(quad) {
+            let i = (px[0] & 1 | (px[1] & 1) << 1) as usize;
+            own_fits[i] = self.observation_px(quads, px, observed).map_or(1.0, |own| fit_of_own(own, gain));
+            disparities[i] = disparity_of(px);
+        }
+        pack_quad_lit(QuadLit { gain, fit: fits, own_fits, is_own: own.is_some(), disparities })
+    }
+
+    /// Candidate of a pixel, and its gain and fit, from the shaded quads around it.
+    #[inline(always)]
+    pub(super) fn quad_candidate<N: Notes>(
+        &self,
+        quads: &Quads,
+        px: [u32; 2],
+        disparity: f32,
+        lights: &QuadLights,
+        notes: &mut N,
+    ) -> Candidate {
+        let level = quads.level_at(px);
+        let is_shaded = quads.is_shaded(px);
+        if level == 0 {
+            if !is_shaded {
+                return Candidate::NONE;
+            }
+            let (color, usable) = self.color_px(quads, px);
+            let alpha = if usable { self.alpha_at(px) } else { 1.0 };
+            let albedo = if usable { AlbedoChange::none(self.albedo_at(px).truncate()) } else { AlbedoChange::NONE };
+            return Candidate { color, usable, alpha, is_own: usable, albedo, ..Candidate::NONE };
+        }
+        let codes = sample_codes(disparity);
+        let mut sums = Sums::NOTHING;
+        let columns = quads.size()[0];
+        let mut noises = NoiseSum::default();
+        let own_albedo = self.albedo_at(px);
+        let mut albedos = no_albedos(own_albedo.truncate());
+        let mut add = |at: [u32; 2]| {
+            let (color, usable) = self.color_px(quads, at);
+            if !usable {
+                return;
+            }
+            let words = lights[Quads::index(at.map(|v| v / 2), columns)];
+            let place = at[0] & 1 | (at[1] & 1) << 1;
+            let lit = quad_lit(words, place);
+            let alike = !self.inputs.tests_depth() || has_code(quad_code(words, place), codes);
+            let px2 = offset_px2(at[0], px[0]) + offset_px2(at[1], px[1]);
+            let share = if at == px { 1.0 } else { 1.0 / px2 };
+            let alpha = self.alpha_at(at);
+            let weight = sums.add((color, alpha), lit, share, px2, alike);
+            if self.albedo.is_some() {
+                albedos = add_albedo(albedos, own_albedo, self.albedo_at(at), color, weight);
+            }
+            if N::ON {
+                note_sample(notes, at, weight, color, lit, self.observe_px(at, level, color, usable));
+            }
+            if self.is_noisy {
+                noises = add_noise(noises, self.sample_noise(at), weight);
+            }
+            if at == px {
+                sums.own = Some((color, alpha, lit.own_fit));
+            }
+        };
+        quads.samples_around(px).for_each(&mut add);
+        let has_surface = sums.has_surface();
+        let mut candidate = sums.candidate(level);
+        if self.albedo.is_some() && candidate.is_own {
+            candidate.albedo = AlbedoChange::none(own_albedo.truncate());
+        } else if self.albedo.is_some() && candidate.usable {
+            let change = candidate_change(albedos, own_albedo, has_surface);
+            candidate = candidate.textured(change);
+        }
+        if self.is_noisy && candidate.usable {
+            candidate.noise = if candidate.is_own { self.sample_noise(px) } else { mean_noise(noises) };
+        }
+        if self.is_noisy && candidate.is_own {
+            candidate.around = self.mean_around(quads, px, codes, lights);
+        }
+        Candidate { lod: if candidate.is_own { 0.0 } else { candidate.lod }, ..candidate }
+    }
+
+    /// Mean of the samples around a noisy pixel with a sample, its own included, and the mean variance of one.
+    #[inline(always)]
+    fn mean_around(&self, quads: &Quads, px: [u32; 2], codes: [u32; 2], lights: &QuadLights) -> (Vec3, f32) {
+        let (mut sum, mut variance, mut weight) = (Vec3::ZERO, 0.0, 0.0);
+        for at in quads.all_samples_around(px) {
+            let (color, usable) = self.color_px(quads, at);
+            let words = lights[Quads::index(at.map(|v| v / 2), quads.size()[0])];
+            let place = at[0] & 1 | (at[1] & 1) << 1;
+            let alike = !self.inputs.tests_depth() || has_code(quad_code(words, place), codes);
+            if usable && (alike || at == px) {
+                let px2 = offset_px2(at[0], px[0]) + offset_px2(at[1], px[1]);
+                let noise = self.sample_noise(at);
+                let share = noisy_share(noise.samples, px2);
+                sum += color * share;
+                variance += noise.variance * share;
+                weight += share;
+            }
+        }
+        let inverse = 1.0 / weight;
+        (sum * inverse, variance * inverse)
+    }
+}
