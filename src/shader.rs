@@ -5,6 +5,8 @@
 //! functions. `lib/` contains functions without bindings, the twins of [`kernel`](crate::kernel). `planned/`, `levels/`
 //! and `foveation/` contain bindings, overrides and one entry point a file, `shared/` what they have in common.
 
+use std::borrow::Cow;
+
 /// One WGSL file.
 #[derive(Debug)]
 pub struct Module {
@@ -114,10 +116,7 @@ impl Composer {
     /// # Panics
     /// As for [`compose`](Self::compose).
     pub fn compose_replacing(&self, name: &str, instead: (&str, &str)) -> Composed {
-        let mut composed = Composed { source: String::new(), origins: vec![] };
-        let all = [self.replaced(name), vec![instead]].concat();
-        self.add(name, &all, &mut composed, &mut vec![], &mut vec![]);
-        composed
+        whole(self.compose_edited(name, Some(instead), &built_in))
     }
 
     /// The modules `names` after all modules that they use, followed by `extra` WGSL.
@@ -125,52 +124,95 @@ impl Composer {
     /// # Panics
     /// As for [`compose`](Self::compose).
     pub fn compose_with(&self, names: &[&str], extra: &str) -> Composed {
-        let mut composed = Composed { source: String::new(), origins: vec![] };
-        let mut done = vec![];
+        let mut composition = Composition::new(self, &built_in);
         for name in names {
-            self.add(name, &self.replaced(name), &mut composed, &mut done, &mut vec![]);
+            whole(composition.add_whole(name, None));
         }
-        composed.push("(the caller's text)", extra);
-        composed
+        composition.composed.push("(the caller's text)", extra);
+        composition.composed
     }
 
-    fn module(&self, name: &str) -> &'static Module {
-        let mut modules = self.tables.iter().flat_map(|table| table.iter());
-        modules.find(|m| m.name == name).unwrap_or_else(|| panic!("no shader module '{name}'"))
-    }
-
-    /// Modules that the module `name` replaces, and by which.
-    fn replaced(&self, name: &str) -> Vec<(&'static str, &'static str)> {
-        let pair =
-            |line: &'static str| line.split_once(' ').unwrap_or_else(|| panic!("by what does '{name}' replace?"));
-        lines_of(self.module(name), "//#instead ").map(pair).collect()
-    }
-
-    fn add(
+    /// As [`compose`](Self::compose) or [`compose_replacing`](Self::compose_replacing), with the texts that `text` gives
+    /// in place of the built-in ones: for shaders that change while a program runs.
+    ///
+    /// # Errors
+    /// A line that says which name is unknown, or which modules use each other in a cycle.
+    pub fn compose_edited(
         &self,
         name: &str,
-        instead: &[(&str, &str)],
-        composed: &mut Composed,
-        done: &mut Vec<&'static str>,
-        open: &mut Vec<&'static str>,
-    ) {
-        let module = self.module(instead.iter().find(|(module, _)| *module == name).map_or(name, |(_, other)| other));
-        if done.contains(&module.name) {
-            return;
-        }
-        assert!(!open.contains(&module.name), "shader modules use each other in a cycle: {open:?}");
-        open.push(module.name);
-        for used in lines_of(module, "//#use ") {
-            self.add(used, instead, composed, done, open);
-        }
-        open.pop();
-        composed.push(module.path, module.text);
-        done.push(module.name);
+        instead: Option<(&str, &str)>,
+        text: &Text<'_>,
+    ) -> Result<Composed, String> {
+        let mut composition = Composition::new(self, text);
+        composition.add_whole(name, instead)?;
+        Ok(composition.composed)
+    }
+
+    fn module(&self, name: &str) -> Result<&'static Module, String> {
+        let mut modules = self.tables.iter().flat_map(|table| table.iter());
+        modules.find(|m| m.name == name).ok_or_else(|| format!("no shader module '{name}'"))
     }
 }
 
-/// What stands behind `key` in the lines at the top of a module.
-fn lines_of(module: &'static Module, key: &'static str) -> impl Iterator<Item = &'static str> {
-    let top = module.text.lines().take_while(|line| line.starts_with("//#"));
+/// Text of a module.
+pub type Text<'t> = dyn Fn(&'static Module) -> Cow<'static, str> + 't;
+
+fn built_in(module: &'static Module) -> Cow<'static, str> {
+    module.text.into()
+}
+
+/// A composition of built-in texts.
+fn whole<T>(result: Result<T, String>) -> T {
+    result.unwrap_or_else(|line| panic!("{line}"))
+}
+
+/// A shader while it is composed.
+struct Composition<'t> {
+    composer: &'t Composer,
+    text: &'t Text<'t>,
+    composed: Composed,
+    done: Vec<&'static str>,
+    open: Vec<&'static str>,
+}
+
+impl<'t> Composition<'t> {
+    fn new(composer: &'t Composer, text: &'t Text<'t>) -> Self {
+        let composed = Composed { source: String::new(), origins: vec![] };
+        Self { composer, text, composed, done: vec![], open: vec![] }
+    }
+
+    /// Adds a module with the replacements that it names, and one more.
+    fn add_whole(&mut self, name: &str, more: Option<(&str, &str)>) -> Result<(), String> {
+        let text = (self.text)(self.composer.module(name)?);
+        let pair = |line| str::split_once(line, ' ').ok_or_else(|| format!("by what does '{name}' replace '{line}'?"));
+        let mut instead = lines_of(&text, "//#instead ").map(pair).collect::<Result<Vec<_>, _>>()?;
+        instead.extend(more);
+        self.add(name, &instead)
+    }
+
+    fn add(&mut self, name: &str, instead: &[(&str, &str)]) -> Result<(), String> {
+        let name = instead.iter().find(|(module, _)| *module == name).map_or(name, |(_, other)| other);
+        let module = self.composer.module(name)?;
+        if self.done.contains(&module.name) {
+            return Ok(());
+        }
+        if self.open.contains(&module.name) {
+            return Err(format!("shader modules use each other in a cycle: {}, {name}", self.open.join(", ")));
+        }
+        self.open.push(module.name);
+        let text = (self.text)(module);
+        for used in lines_of(&text, "//#use ") {
+            self.add(used, instead)?;
+        }
+        self.open.pop();
+        self.composed.push(module.path, &text);
+        self.done.push(module.name);
+        Ok(())
+    }
+}
+
+/// What stands behind `key` in the lines at the top of a module's text.
+fn lines_of<'t>(text: &'t str, key: &'static str) -> impl Iterator<Item = &'t str> {
+    let top = text.lines().take_while(|line| line.starts_with("//#"));
     top.filter_map(move |line| line.strip_prefix(key)).map(str::trim)
 }

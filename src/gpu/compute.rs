@@ -6,7 +6,7 @@ use super::dump::dump;
 use super::output::format_of;
 use crate::method::Overrides;
 use crate::settings::Settings;
-use crate::shader::SHADERS;
+use crate::shader::{Module, SHADERS};
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::fmt::Debug;
@@ -54,8 +54,11 @@ struct Pipelines {
     generation: u64,
 }
 
-/// Function from the name of a pass's module to its WGSL text.
-type Text = dyn Fn(&str) -> Cow<'static, str> + Send + Sync;
+/// Function from the name of a pass's module to its WGSL text; also of one that draws a debug view beside its output.
+type Text = dyn Fn(&str, WithView) -> Cow<'static, str> + Send + Sync;
+
+/// Whether a pass draws a debug view beside its output.
+type WithView = bool;
 
 /// A device, a text, and what the device has made of it.
 type Known = (Device, String, Arc<Compiled>);
@@ -69,22 +72,41 @@ pub struct Sources {
 }
 
 impl Sources {
-    /// Texts that `text` gives: for tests that plant errors, and for benchmarks.
+    /// Texts that `text` gives: for tests that plant errors, and for benchmarks. Passes with a debug view are built in.
     pub fn new(text: impl Fn(&str) -> Cow<'static, str> + Send + Sync + 'static) -> Self {
-        Self { text: Arc::new(text), known: Arc::default() }
+        let texts = move |name: &str, with_view| if with_view { built_in(name, true) } else { text(name) };
+        Self { text: Arc::new(texts), known: Arc::default() }
+    }
+
+    /// Texts of modules that `text` gives in place of the built-in ones, for shaders that change while a program runs.
+    /// [`compose_edited`](crate::shader::Composer::compose_edited) must have composed each pass of them without an
+    /// error; otherwise the pass is built in.
+    pub fn edited(text: impl Fn(&'static Module) -> Cow<'static, str> + Send + Sync + 'static) -> Self {
+        let texts = move |name: &str, with_view: WithView| {
+            let composed = SHADERS.compose_edited(name, with_view.then_some(VIEW_BESIDE), &text);
+            composed.map_or_else(|_| built_in(name, with_view), |composed| composed.source.into())
+        };
+        Self { text: Arc::new(texts), known: Arc::default() }
     }
 
     /// These texts with `text` for one pass.
     #[must_use]
     pub fn with(self, name: &'static str, text: &str) -> Self {
         let (text, texts) = (text.to_owned(), self.text);
-        let texts = move |other: &str| if other == name { text.clone().into() } else { texts(other) };
+        let texts = move |other: &str, with_view: WithView| {
+            if other == name && !with_view { text.clone().into() } else { texts(other, with_view) }
+        };
         Self { text: Arc::new(texts), known: self.known }
     }
 
     /// The text of a pass.
     pub fn text(&self, name: &str) -> Cow<'static, str> {
-        (self.text)(name)
+        (self.text)(name, false)
+    }
+
+    /// The text of a pass that draws a debug view beside its output.
+    pub fn text_with_view(&self, name: &str) -> Cow<'static, str> {
+        (self.text)(name, true)
     }
 
     /// The shader of a pass.
@@ -107,7 +129,17 @@ impl Sources {
 
 impl Default for Sources {
     fn default() -> Self {
-        Self::new(|name| SHADERS.compose(name).source.into())
+        Self { text: Arc::new(built_in), known: Arc::default() }
+    }
+}
+
+/// Modules of outputs without and with a debug view beside them.
+const VIEW_BESIDE: (&str, &str) = ("output", "output_and_view");
+
+fn built_in(name: &str, with_view: WithView) -> Cow<'static, str> {
+    match with_view {
+        true => SHADERS.compose_replacing(name, VIEW_BESIDE).source.into(),
+        false => SHADERS.compose(name).source.into(),
     }
 }
 

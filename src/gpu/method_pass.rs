@@ -6,7 +6,6 @@ use super::compute::{ComputeShader, Sources};
 use super::stage::{Job, Passes, Specialization};
 use crate::context::ContextDesc;
 use crate::method::PassShader;
-use crate::shader::SHADERS;
 use std::sync::OnceLock;
 use wgpu::{Device, TextureFormat};
 
@@ -35,7 +34,7 @@ impl MethodPass {
             return &self.shader;
         }
         self.with_view.get_or_init(|| {
-            let source = SHADERS.compose_replacing(self.pass.name, ("output", "output_and_view")).source;
+            let source = self.sources.text_with_view(self.pass.name);
             self.sources.shader_of(device, self.pass.name, &writing(device, &source, self.output))
         })
     }

@@ -38,7 +38,19 @@ impl DeviceRun {
         formats: DeviceFormats,
         source: &str,
     ) -> Result<Self, CreateError> {
-        let sources = Sources::default().with(method_pass(&desc.settings), source);
+        Self::with_sources(gpu, desc, formats, Sources::default().with(method_pass(&desc.settings), source))
+    }
+
+    /// Creates a run with other texts of the passes.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    pub fn with_sources(
+        gpu: &Arc<Headless>,
+        desc: &ContextDesc,
+        formats: DeviceFormats,
+        sources: Sources,
+    ) -> Result<Self, CreateError> {
         Ok(Self::of(gpu, Afterimage::with_sources(&gpu.device, desc, formats.color, sources)?, formats))
     }
 

@@ -24,6 +24,7 @@ mod resources;
 mod screen;
 mod setup;
 mod shader;
+mod shader_folder;
 mod state;
 mod surface;
 mod times;
@@ -102,6 +103,10 @@ pub struct ViewArgs {
     /// Start with the panel hidden
     #[arg(long)]
     pub no_panel: bool,
+    /// For who changes the method: its shaders from here, read again as the files change; the folder shaders of the
+    /// sources, or one with some of its files
+    #[arg(long, value_name = "DIR")]
+    pub shaders: Option<PathBuf>,
 }
 
 /// The subcommand.

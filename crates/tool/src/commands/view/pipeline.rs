@@ -3,6 +3,7 @@
 
 use super::examiner::Examiner;
 use super::setup::Setup;
+use super::shader_folder::ShaderFolder;
 use super::state::{Shows, Side, State};
 use super::times::{Pass, PassTimes};
 use crate::failure::Failure;
@@ -40,6 +41,8 @@ pub struct ViewPipeline {
     desc: ContextDesc,
     /// Depth and motion of quad views.
     view_geometry: Geometry,
+    /// With `--shaders`.
+    shaders: Option<ShaderFolder>,
     /// Whether planned frames are jittered.
     is_jittered: bool,
     /// Quad views of rendered frames.
@@ -75,6 +78,7 @@ impl ViewPipeline {
             examiner: None,
             desc,
             view_geometry,
+            shaders: setup.args.shaders.as_deref().map(|dir| ShaderFolder::open(dir, &gpu.device)).transpose()?,
             is_jittered: setup.args.foveation.is_jittered(),
             quad_views: None,
             position: 0,
@@ -114,8 +118,19 @@ impl ViewPipeline {
     }
 
     fn side_run(&self, shows: Shows, settings: Settings) -> Result<SideRun, Failure> {
-        let new = |_| DeviceRun::new(&self.gpu, &desc(&self.geometry, settings), FORMATS);
+        let sources = || self.shaders.as_ref().map(|shaders| shaders.sources.clone()).unwrap_or_default();
+        let new = |_| DeviceRun::with_sources(&self.gpu, &desc(&self.geometry, settings), FORMATS, sources());
         Ok(SideRun { shows, run: shows.method().map(new).transpose()? })
+    }
+
+    /// Takes shaders whose files have changed since the last call, and returns whether any did.
+    pub fn reload(&mut self, state: &State, setup: &Setup) -> Result<bool, Failure> {
+        let has_changed = self.shaders.as_mut().is_some_and(|shaders| shaders.has_changed(&self.gpu.device));
+        if has_changed {
+            self.runs.clear();
+            self.adapt(state, setup)?;
+        }
+        Ok(has_changed)
     }
 
     /// Size in pixels and field of view of the frames.

@@ -175,6 +175,9 @@ impl Viewer {
             eprintln!("afterimage: the device is lost; opening another");
             self.reopen()?;
         }
+        if self.resources.pipeline.reload(&self.state, &self.setup)? {
+            self.reset_history();
+        }
         self.fetch()?;
         // Playback and --frames wait for each input frame. Otherwise the last frame is shown again at the current gaze.
         let waits = self.state.is_playing || self.setup.args.frames.is_some();
