@@ -31,19 +31,31 @@ fn keep_vertex(vertex: Vertex) -> GeometryVarying {
     return GeometryVarying(position, relative, before, vertex.normal, vertex.tangent, vertex.uvs, vertex.color);
 }
 
-fn kept(in: GeometryVarying, base: vec4f, front: bool) -> Kept {
+// The normal that lighting makes visible from the eye. Not of unit length.
+fn kept_normal(in: GeometryVarying, front: bool) -> vec3f {
     let across = cross(dpdx(in.relative), dpdy(in.relative));
-    let normals = normals_at(unit(-in.relative), across, in.normal, in.tangent, in.uvs, front);
+    let side = select(-1.0, 1.0, front);
+    let face = across * select(side, -side, dot(across, in.relative) > 0.0);
+    var normal = select(face, in.normal, dot(in.normal, face) > 0.0);
+    if NORMAL_MAP {
+        normal = with_normal_map(unit(normal), in.tangent, in.uvs);
+    }
+    return normal * side;
+}
+
+fn kept(in: GeometryVarying, base: vec3f, front: bool) -> Kept {
     let widths = roughness_and_metalness(in.uvs);
+    let depth = in.position.z;
+    let slopes = vec2f(dpdx(depth), dpdy(depth)) / depth;
     let emitted = emitted_at(in.uvs, front);
-    let words = words_of(normals.shading, normals.geometric, emitted, widths.x, u32(material.index));
-    return Kept(moved(homogeneous_px(frame.current, in.relative), in.before), vec4f(base.xyz, widths.y), words);
+    let words = words_of(kept_normal(in, front), slopes, emitted, widths.x, u32(material.index));
+    return Kept(moved(homogeneous_px(frame.current, in.relative), in.before), base_word(base, widths.y), words);
 }
 
 @fragment
 fn keep(in: GeometryVarying, @builtin(front_facing) front: bool) -> Kept {
     let base = base_at(in.uvs, in.color);
-    let kept = kept(in, base, front);
+    let kept = kept(in, base.xyz, front);
     // Last: discarded invocations may give neighbours no derivatives.
     if !passes_alpha_test(base.w) {
         discard;
@@ -53,5 +65,5 @@ fn keep(in: GeometryVarying, @builtin(front_facing) front: bool) -> Kept {
 
 @fragment
 fn keep_opaque(in: GeometryVarying, @builtin(front_facing) front: bool) -> Kept {
-    return kept(in, base_at(in.uvs, in.color), front);
+    return kept(in, base_at(in.uvs, in.color).xyz, front);
 }

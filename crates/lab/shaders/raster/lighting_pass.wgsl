@@ -21,6 +21,13 @@ fn ray_of(px: vec2f) -> vec3f {
     return (frame.right.xyz * px.x + frame.down.xyz * px.y) + frame.corner.xyz;
 }
 
+// Normal of the triangle at a pixel, on the eye's side: the depth over that at the pixel is the product of a plane's
+// normal and the ray, here written in the camera's rows, which are dual to the rays' steps.
+fn triangle_normal(px: vec2f, slopes: vec2f) -> vec3f {
+    let eye = frame.current;
+    return -unit((eye.x.xyz * slopes.x + eye.y.xyz * slopes.y) + eye.along.xyz * (1.0 - dot(slopes, px)));
+}
+
 // BSDF parameters of a kept surface.
 fn surface_of(kept: KeptSurface) -> BsdfSurface {
     let specular = textureLoad(material_map, vec2u(0u, kept.material), 0);
@@ -50,7 +57,10 @@ fn point_at(px: vec2u, depth: f32) -> LitPoint {
     let ray = ray_of(vec2f(px));
     let eye = frame.current;
     let position = (ray * (frame.near / depth) + eye.low.xyz) + eye.high.xyz;
-    return LitPoint(position, unit(-ray), kept.geometric, kept.normal, vec3f(0.0), kept.emitted, surface_of(kept));
+    let toward = unit(-ray);
+    let geometric = triangle_normal(vec2f(px), kept.slopes);
+    let normal = visible_normal(kept.normal, geometric, toward);
+    return LitPoint(position, toward, geometric, normal, vec3f(0.0), kept.emitted, surface_of(kept));
 }
 
 fn lit(px: vec2u) -> vec4f {

@@ -29,6 +29,15 @@ fn emitted_at(uvs: vec4f, front: bool) -> vec3f {
     return emitted;
 }
 
+// The unit normal `normal` as the normal map changes it, if the material has one.
+fn with_normal_map(normal: vec3f, tangent: vec4f, uvs: vec4f) -> vec3f {
+    let mapped = textureSampleBias(normal_map, normal_sampler, uv_of(2u, uvs), frame.texture_bias).xyz;
+    if material.normal_texture == NO_TEXTURE {
+        return normal;
+    }
+    return mapped_normal(normal, tangent.xyz, tangent.w, mapped, material.normal_scale);
+}
+
 struct Normals {
     // Of the triangle, on the eye's side.
     geometric: vec3f,
@@ -39,18 +48,14 @@ struct Normals {
 // Normals of a point in the direction `toward` the eye. `across`: the cross product of the position's derivatives;
 // `interpolated` and `tangent`: those of the vertices.
 fn normals_at(toward: vec3f, across: vec3f, interpolated: vec3f, tangent: vec4f, uvs: vec4f, front: bool) -> Normals {
-    var mapped = vec3f(0.5, 0.5, 1.0);
-    if NORMAL_MAP {
-        mapped = textureSampleBias(normal_map, normal_sampler, uv_of(2u, uvs), frame.texture_bias).xyz;
-    }
     var geometric = unit(across);
     geometric = select(geometric, -geometric, dot(geometric, toward) < 0.0);
     let side = select(-1.0, 1.0, front);
     let face = geometric * side;
     var normal = unit(interpolated);
     normal = select(face, normal, dot(normal, face) > 0.0);
-    if NORMAL_MAP && material.normal_texture != NO_TEXTURE {
-        normal = mapped_normal(normal, tangent.xyz, tangent.w, mapped, material.normal_scale);
+    if NORMAL_MAP {
+        normal = with_normal_map(normal, tangent, uvs);
     }
     return Normals(geometric, visible_normal(normal * side, geometric, toward));
 }

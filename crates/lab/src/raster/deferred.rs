@@ -88,26 +88,27 @@ impl Raster {
         let window = Window::full(view.geometry().size_px()).with_points();
         let section = self.empty_section(device, [view, previous], window);
         self.shadows(encoder, &section.group);
-        self.light_pass(device, encoder, &section.group, list, (targets, &targets.atlas));
+        self.light_pass(device, encoder, &section.group, list, (targets, &targets.atlas.views[0]));
         if self.has_blended {
-            self.blend_over(device, encoder, view, &section, list, (targets, self.point_pipelines(device)));
+            let blended = (&targets.atlas.views[0], self.point_pipelines(device));
+            self.blend_over(device, encoder, view, &section, (list, targets), blended);
         }
     }
 
-    /// Lights all pixels that `frame` shows, or the quads of `list`, into the color of `to`; other pixels are black.
+    /// Lights all pixels that `frame` shows, or the quads of `list`, into `to`; other pixels are black.
     pub(super) fn light_pass(
         &self,
         device: &Device,
         encoder: &mut CommandEncoder,
         frame: &BindGroup,
         list: Option<&Buffer>,
-        (surfaces, to): (&FoveatedTargets, &Targets),
+        (surfaces, to): (&FoveatedTargets, &TextureView),
     ) {
         let Some(Deferred { pipelines, .. }) = &self.deferred else { return };
         let Some(list) = list else {
             return self.compute_pass(device, encoder, &pipelines.light_all, frame, (surfaces, to));
         };
-        clear(encoder, &to.views[0]);
+        clear(encoder, to);
         let quads = bind_group(device, "chosen quads", &self.layouts.quads, [list.as_entire_binding()]);
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(&pipelines.light_quads);
@@ -118,42 +119,43 @@ impl Raster {
         pass.dispatch_workgroups_indirect(list, LIST_DISPATCH);
     }
 
-    /// Runs a pipeline for each pixel of the color of `to`.
+    /// Runs a pipeline for each pixel of `to`.
     fn compute_pass(
         &self,
         device: &Device,
         encoder: &mut CommandEncoder,
         pipeline: &ComputePipeline,
         frame: &BindGroup,
-        (surfaces, to): (&FoveatedTargets, &Targets),
+        (surfaces, to): (&FoveatedTargets, &TextureView),
     ) {
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, frame, &[]);
         pass.set_bind_group(1, &self.g_buffer_group(device, surfaces, to), &[]);
         pass.set_bind_group(2, &self.lighting_maps, &[]);
-        pass.dispatch_workgroups(to.color.width().div_ceil(64), to.color.height(), 1);
+        let size = to.texture().size();
+        pass.dispatch_workgroups(size.width.div_ceil(64), size.height, 1);
     }
 
-    fn g_buffer_group(&self, device: &Device, surfaces: &FoveatedTargets, to: &Targets) -> BindGroup {
+    fn g_buffer_group(&self, device: &Device, surfaces: &FoveatedTargets, to: &TextureView) -> BindGroup {
         let deferred = self.deferred.as_ref().expect("deferred frames have it");
         let [base, words] = surfaces.kept(device);
-        let views = [self.opaque_depth(surfaces), base, words, &deferred.materials, &to.views[0]];
+        let views = [self.opaque_depth(surfaces), base, words, &deferred.materials, to];
         bind_group(device, "g-buffer", &self.layouts.g_buffer, views.map(BindingResource::TextureView))
     }
 
-    /// Draws the blended surfaces over the color of `targets`, in the quads of `list` or everywhere.
+    /// Draws the blended surfaces of `targets` over `color`, in the quads of `list` or everywhere.
     fn blend_over(
         &self,
         device: &Device,
         encoder: &mut CommandEncoder,
         view: &View,
         section: &Section,
-        list: Option<&Buffer>,
-        (targets, pipelines): (&FoveatedTargets, &ColorPipelines),
+        (list, targets): (Option<&Buffer>, &FoveatedTargets),
+        (color, pipelines): (&TextureView, &ColorPipelines),
     ) {
         let blended = self.back_to_front(device, view);
-        let color = [Some(target(&targets.atlas.views[0], None, LoadOp::Load))];
+        let color = [Some(target(color, None, LoadOp::Load))];
         let depth = match list {
             None => (self.opaque_depth(targets), LoadOp::Load),
             Some(_) => (targets.closed_depth(device), LoadOp::Clear(NEAR_PLANE)),
@@ -173,7 +175,7 @@ impl Raster {
         self.draw_blended(&mut pass, pipelines, &blended);
     }
 
-    /// Records the albedo of the surfaces in `targets` into their color.
+    /// Records the albedo of the surfaces in `targets`.
     pub(super) fn deferred_albedo(
         &self,
         device: &Device,
@@ -185,9 +187,11 @@ impl Raster {
         let Some(Deferred { pipelines, .. }) = &self.deferred else { return };
         let section = self.empty_section(device, [view, previous], window);
         let pipeline = pipelines.albedo(device, &self.layouts, self.effects);
-        self.compute_pass(device, encoder, pipeline, &section.group, (targets, &targets.atlas));
+        let albedo = targets.albedo_view(device);
+        self.compute_pass(device, encoder, pipeline, &section.group, (targets, albedo));
         if self.has_blended {
-            self.blend_over(device, encoder, view, &section, None, (targets, self.albedo_pipelines(device)));
+            let blended = (albedo, self.albedo_pipelines(device));
+            self.blend_over(device, encoder, view, &section, (None, targets), blended);
         }
     }
 }

@@ -19,7 +19,8 @@
 //! ([`record_surfaces`](Raster::record_surfaces)), then the color of chosen quads
 //! ([`record_quads`](Raster::record_quads)) or of one pixel of each quad ([`record_half`](Raster::record_half)); or as
 //! quad views ([`record_quad_views`](Raster::record_quad_views)), regions at lower resolutions that a [`Composer`]
-//! enlarges. Triangles outside a view are left out in groups, at full rate as well.
+//! enlarges. With [`Shading::Deferred`] frames with one sample a pixel draw their triangles once, into a G-buffer, and a
+//! compute pass lights the pixels that are shaded. Triangles outside a view are left out in groups, at full rate as well.
 //!
 //! - **Alpha.** MASK: alpha test against the cutoff; in the color pass, alpha to coverage smooths the edge. BLEND and
 //!   transmissive surfaces: drawn after the sky, back to front by material and by triangle within a material, without

@@ -101,7 +101,7 @@ impl Raster {
         if let (true, Some(surfaces)) = (self.deferred.is_some() && !self.has_blended, surfaces) {
             let group = self.frame_uniforms(device, [view, previous], &window);
             self.shadows(encoder, &group);
-            return self.light_pass(device, encoder, &group, None, (surfaces, &targets.atlas));
+            return self.light_pass(device, encoder, &group, None, (surfaces, &targets.atlas.views[0]));
         }
         let section = self.section(device, [view, previous], window);
         self.shadows(encoder, &section.group);
@@ -195,8 +195,8 @@ impl Raster {
         self.color_pass(encoder, target, point_depth_view, pipelines, &[section], &blended);
     }
 
-    /// Records the albedo of every pixel of the full-rate frame, with one sample at its centre, into the color of
-    /// `targets`: the share of uniform light that its surface returns, 0 in the sky. Blended surfaces have theirs by
+    /// Records the albedo of every pixel of the full-rate frame, with one sample at its centre, into the albedo
+    /// of `targets`: the share of uniform light that its surface returns, 0 in the sky. Blended surfaces have theirs by
     /// their opacity. Deferred frames read the surfaces of the same frame, which
     /// [`record_surfaces`](Self::record_surfaces) left in `targets`.
     pub fn record_albedo(
@@ -213,10 +213,9 @@ impl Raster {
         }
         let section = self.section(device, [view, previous], window);
         let blended = self.back_to_front(device, view);
-        let FoveatedTargets { atlas: Targets { views: [color, ..], .. }, point_depth_view, .. } = targets;
-        let target = target(color, None, LoadOp::Clear(Color::BLACK));
+        let target = target(targets.albedo_view(device), None, LoadOp::Clear(Color::BLACK));
         let pipelines = self.albedo_pipelines(device);
-        self.color_pass(encoder, target, point_depth_view, pipelines, &[section], &blended);
+        self.color_pass(encoder, target, &targets.point_depth_view, pipelines, &[section], &blended);
     }
 
     pub(super) fn albedo_pipelines(&self, device: &Device) -> &ColorPipelines {
@@ -267,6 +266,14 @@ impl Raster {
             filled(device, "raster frame", bytemuck::bytes_of(&lights), BufferUsages::STORAGE),
         ];
         bind_group(device, "frame", &self.layouts.frame, buffers.each_ref().map(Buffer::as_entire_binding))
+    }
+
+    /// Records the shadow map anew, as if the scene had moved.
+    pub fn record_shadows(&mut self, device: &Device, encoder: &mut CommandEncoder, views: [&View; 2]) {
+        self.upload(device, encoder);
+        self.is_shadow_stale = true;
+        let group = self.frame_uniforms(device, views, &Window::full(views[0].geometry().size_px()));
+        self.shadows(encoder, &group);
     }
 
     /// Draws the shadow map anew if the scene moved. `group`: uniforms of the full-rate frame.

@@ -8,7 +8,7 @@ use std::cell::OnceCell;
 use wgpu::{Device, Texture, TextureFormat, TextureUsages, TextureView};
 
 /// Formats of the G-buffer besides depth and motion: base color and metalness; words (`shaders/raster/g_buffer.wgsl`).
-pub(super) const KEPT_FORMATS: [TextureFormat; 2] = [TextureFormat::Rgba8UnormSrgb, TextureFormat::Rgba32Uint];
+pub(super) const KEPT_FORMATS: [TextureFormat; 2] = [TextureFormat::Rgba8Unorm, TextureFormat::Rgba32Uint];
 
 /// Textures of a frame. They can be bound by later passes and copied.
 #[derive(Debug)]
@@ -71,6 +71,7 @@ pub struct FoveatedTargets {
     pub(super) point_depth_view: TextureView,
     kept: OnceCell<[TextureView; 2]>,
     closed_depth: OnceCell<TextureView>,
+    albedo: OnceCell<(Texture, TextureView)>,
 }
 
 impl FoveatedTargets {
@@ -78,8 +79,26 @@ impl FoveatedTargets {
     pub fn new(device: &Device, size: [u32; 2]) -> Self {
         let point_depth = attachment(device, size, DEPTH_FORMAT, 1);
         let point_depth_view = point_depth.create_view(&Default::default());
-        let (kept, closed_depth) = (OnceCell::new(), OnceCell::new());
-        Self { atlas: Targets::new(device, size), point_depth, point_depth_view, kept, closed_depth }
+        let atlas = Targets::new(device, size);
+        let (kept, closed_depth, albedo) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
+        Self { atlas, point_depth, point_depth_view, kept, closed_depth, albedo }
+    }
+
+    /// Texture of albedo, of the format of color.
+    pub fn albedo(&self, device: &Device) -> &Texture {
+        &self.albedo_target(device).0
+    }
+
+    pub(super) fn albedo_view(&self, device: &Device) -> &TextureView {
+        &self.albedo_target(device).1
+    }
+
+    fn albedo_target(&self, device: &Device) -> &(Texture, TextureView) {
+        self.albedo.get_or_init(|| {
+            let texture = attachment(device, [self.atlas.color.width(), self.atlas.color.height()], COLOR_FORMAT, 1);
+            let view = texture.create_view(&Default::default());
+            (texture, view)
+        })
     }
 
     fn attachment_view(&self, device: &Device, format: TextureFormat) -> TextureView {

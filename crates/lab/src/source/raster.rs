@@ -177,7 +177,7 @@ impl RasterSource {
             Wanted::Surfaces => {
                 let surfaces = self.record_surfaces(encoder, views);
                 if request.albedo && self.raster.is_deferred() {
-                    self.record_albedo(encoder, views);
+                    self.record_albedo_of(encoder, views);
                 }
                 (OnDevice::Surfaces(surfaces), None)
             }
@@ -264,12 +264,34 @@ impl RasterSource {
         on_device(&self.device, &targets.atlas, self.raster.near())
     }
 
-    /// Albedo of every pixel, into the color of the targets. Deferred frames must have been given the same surfaces.
-    fn record_albedo(&mut self, encoder: &mut CommandEncoder, views: [&View; 2]) -> Texture {
+    /// Albedo of every pixel. Deferred frames must have drawn the same surfaces last.
+    fn record_albedo_of(&mut self, encoder: &mut CommandEncoder, views: [&View; 2]) -> Texture {
         let device = &self.device.device;
         let targets = fitted(&mut self.points, device, self.of.info().size);
         self.raster.record_albedo(device, encoder, views, targets);
-        targets.atlas.color.clone()
+        targets.albedo(device).clone()
+    }
+
+    /// Records the albedo of every pixel of frame `index`, whose depth and motion were rendered last. The texture is
+    /// drawn to again with the next frame.
+    pub fn record_albedo(&mut self, encoder: &mut CommandEncoder, index: u64, jitter_px: [f32; 2]) -> Texture {
+        let [view, previous] = self.jittered_views(index, jitter_px);
+        self.record_albedo_of(encoder, [&view, &previous])
+    }
+
+    /// Records the full-rate frame `index` with one sample a pixel, in the pose that was rendered last.
+    pub fn record_points(&mut self, encoder: &mut CommandEncoder, index: u64, jitter_px: [f32; 2]) -> DeviceFrame {
+        let [view, previous] = self.jittered_views(index, jitter_px);
+        let device = &self.device.device;
+        let targets = fitted(&mut self.points, device, self.of.info().size);
+        self.raster.record_points(device, encoder, [&view, &previous], targets);
+        on_device(&self.device, &targets.atlas, self.raster.near())
+    }
+
+    /// Records the shadow map of frame `index` anew, as if the scene had moved.
+    pub fn record_shadows(&mut self, encoder: &mut CommandEncoder, index: u64) {
+        let [view, previous] = self.of.views(index).0;
+        self.raster.record_shadows(&self.device.device, encoder, [&view, &previous]);
     }
 
     /// Whether frames with one sample a pixel are deferred ([`Shading::Deferred`]).
@@ -325,7 +347,7 @@ impl RasterSource {
             if source.raster.is_deferred() {
                 source.record_surfaces(encoder, [&view, &previous]);
             }
-            source.record_albedo(encoder, [&view, &previous])
+            source.record_albedo_of(encoder, [&view, &previous])
         })?;
         Ok(read_color(&self.device, &color))
     }
@@ -455,7 +477,9 @@ impl FrameSource for RasterSource {
         }
         // Deferred frames have it beside depth and motion. Forward ones draw it apart, and their time is without.
         let albedo = match (&self.points, &request.wanted) {
-            (Some(points), Wanted::Surfaces) if self.is_deferred() => read_color(&self.device, &points.atlas.color),
+            (Some(points), Wanted::Surfaces) if self.is_deferred() => {
+                read_color(&self.device, points.albedo(&self.device.device))
+            }
             _ => self.albedo(request.index, frame.jitter_px)?,
         };
         Ok(RenderedFrame { albedo: Some(albedo), ..frame })
