@@ -1,7 +1,8 @@
 //! Times of whole frames: forward and deferred, full rate with taa, and planned with smr and albedo.
 //!
-//! Medians of CPU time of the process on software Vulkan, otherwise of the device's time, over frames that all ways take
-//! in turn: of the geometry (depth and motion, or the G-buffer), the albedo, the light, and the method with its plan.
+//! Medians of CPU time of the process on software Vulkan, otherwise of the device's time, over frames that all ways
+//! take in turn: of the geometry (depth and motion, or the G-buffer), the albedo, the light, and the method with its
+//! plan.
 //!
 //! `cargo run --release -p afterimage-research --example deferred -- SCENE [--camera NAME] [--size WxH] [--frames N]
 //! [--triangles N] [--shadow-maps N]`

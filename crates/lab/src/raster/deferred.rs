@@ -2,7 +2,7 @@
 
 use super::Raster;
 use super::chosen_quads::LIST_DISPATCH;
-use super::deferred_pipelines::DeferredPipelines;
+use super::deferred_pipelines::Deferred;
 use super::pipelines::ColorPipelines;
 use super::record::{FAR_PLANE, NEAR_PLANE, Section, begin_with, target};
 use super::targets::{FoveatedTargets, Targets};
@@ -13,14 +13,6 @@ use crate::view::View;
 use wgpu::{
     BindGroup, BindingResource, Buffer, Color, CommandEncoder, ComputePipeline, Device, LoadOp, StoreOp, TextureView,
 };
-
-/// What deferred frames of a scene need.
-#[derive(Debug)]
-pub(super) struct Deferred {
-    pub pipelines: DeferredPipelines,
-    /// What lighting needs of the materials ([`texels`](super::materials::texels)).
-    pub materials: TextureView,
-}
 
 impl Raster {
     /// Whether frames with one sample a pixel are deferred.

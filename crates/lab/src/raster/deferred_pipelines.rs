@@ -7,8 +7,16 @@ use crate::scene::effects::Effects;
 use std::cell::OnceCell;
 use wgpu::{
     BindGroupLayout, ColorWrites, CompareFunction, ComputePipeline, Device, PipelineCompilationOptions, RenderPipeline,
-    ShaderModule,
+    ShaderModule, TextureView,
 };
+
+/// What deferred frames of a scene need.
+#[derive(Debug)]
+pub(super) struct Deferred {
+    pub pipelines: DeferredPipelines,
+    /// What lighting needs of the materials ([`texels`](super::materials::texels)).
+    pub materials: TextureView,
+}
 
 /// Pipelines of deferred frames: surfaces into the G-buffer, and lighting that reads it.
 #[derive(Debug)]

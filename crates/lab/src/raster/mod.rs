@@ -19,8 +19,9 @@
 //! ([`record_surfaces`](Raster::record_surfaces)), then the color of chosen quads
 //! ([`record_quads`](Raster::record_quads)) or of one pixel of each quad ([`record_half`](Raster::record_half)); or as
 //! quad views ([`record_quad_views`](Raster::record_quad_views)), regions at lower resolutions that a [`Composer`]
-//! enlarges. With [`Shading::Deferred`] frames with one sample a pixel draw their triangles once, into a G-buffer, and a
-//! compute pass lights the pixels that are shaded. Triangles outside a view are left out in groups, at full rate as well.
+//! enlarges. With [`Shading::Deferred`] frames with one sample a pixel draw their triangles once, into a G-buffer, and
+//! a compute pass lights the pixels that are shaded. Triangles outside a view are left out in groups, at full rate as
+//! well.
 //!
 //! - **Alpha.** MASK: alpha test against the cutoff; in the color pass, alpha to coverage smooths the edge. BLEND and
 //!   transmissive surfaces: drawn after the sky, back to front by material and by triangle within a material, without
@@ -65,8 +66,7 @@ use crate::scene::{Environment, Pose, PunctualLight, Scene};
 use afterimage::kernel::pack::half_bits;
 use bytemuck::Zeroable;
 use chosen_quads::ChunkTest;
-use deferred::Deferred;
-use deferred_pipelines::DeferredPipelines;
+use deferred_pipelines::{Deferred, DeferredPipelines};
 use lighting::Lighting;
 use materials::upload_levels;
 use pipelines::{ColorPipelines, Layouts, Pipelines};

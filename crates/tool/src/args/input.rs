@@ -40,8 +40,8 @@ pub struct InputArgs {
     /// Renderer of a scene; default: raster
     #[arg(long, value_enum, value_name = "NAME", help_heading = HEADING)]
     pub source: Option<SourceName>,
-    /// Where surfaces of --source raster are lit: as they are drawn, or, in frames with one sample a pixel (planned ones,
-    /// --jitter halton), from a G-buffer; default: forward
+    /// Where surfaces of --source raster are lit: as they are drawn, or, in frames with one sample a pixel (planned
+    /// ones, --jitter halton), from a G-buffer; default: forward
     #[arg(long, value_enum, value_name = "NAME", help_heading = HEADING)]
     pub shading: Option<ShadingName>,
     /// Samples per pixel of --source trace: of full-rate frames, or of the fovea with --sampling
