@@ -9,7 +9,7 @@
 @group(2) @binding(4) var albedo_tables: texture_2d<u32>;
 
 // Largest f16 value, the color format's.
-const MAX_COLOR: f32 = 65504.0;
+const LARGEST_HALF: f32 = 65504.0;
 
 // Cell of the albedo tables.
 fn load(i: u32) -> vec4u {

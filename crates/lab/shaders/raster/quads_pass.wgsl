@@ -1,6 +1,6 @@
 //#use raster_frame
 // Depth of chosen quads of 2x2 pixels: the far plane. The rest of the target is at the near plane, where the depth test
-// rejects whatever is drawn then.
+// rejects whatever is drawn then. Where a G-buffer has the opaque surfaces, the quads get their depth.
 
 // The list of gpu::Afterimage::quad_list.
 @group(1) @binding(0) var<storage, read> list: array<u32>;
@@ -18,3 +18,11 @@ fn quad(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u
 // Writes no color.
 @fragment
 fn nothing() {}
+
+// Depth of the opaque surfaces.
+@group(2) @binding(0) var opaque_map: texture_depth_2d;
+
+@fragment
+fn opaque_depth(@builtin(position) position: vec4f) -> @builtin(frag_depth) f32 {
+    return textureLoad(opaque_map, vec2u(position.xy), 0);
+}

@@ -102,6 +102,18 @@ fn clip(px: vec3f) -> vec4f {
     return vec4f(x, y, frame.near, px.z);
 }
 
+// Motion of points behind the previous camera.
+const OFF_FRAME_PX: f32 = 1e6;
+
+// Motion between two homogeneous pixels: previous minus current position, y down.
+fn moved(now: vec3f, before: vec3f) -> vec2f {
+    if before.z <= 0.0 {
+        return vec2f(OFF_FRAME_PX);
+    }
+    let off = vec2f(OFF_FRAME_PX);
+    return clamp(before.xy / before.z - now.xy / now.z, -off, off);
+}
+
 // Pixel of the full-rate frame that a fragment shows.
 fn full_rate_px(position: vec4f) -> vec2f {
     return frame.first_px + ((position.xy - vec2f(0.5)) - frame.origin) * frame.step;

@@ -11,7 +11,7 @@ const FLAG_BLEND: u32 = 2u;
 const FLAG_DOUBLE_SIDED: u32 = 4u;
 const FLAG_VOLUME: u32 = 8u;
 
-// MaterialRecord in src/scene/shading_records.rs, and the coordinates of the textures.
+// MaterialRecord in src/scene/shading_records.rs, the index in its unused part, and the coordinates of the textures.
 struct RasterMaterial {
     base_color: vec3f,
     opacity: f32,
@@ -47,7 +47,9 @@ struct RasterMaterial {
     sheen_roughness_texture: u32,
     transmission_texture: u32,
     phong_diffuse: f32,
-    unused: vec2f,
+    // Place among the scene's materials.
+    index: f32,
+    unused: f32,
     // Of each texture, in the order of their bindings: rows of the transform; the fourth element of the first row is 1
     // for the second texture coordinates.
     coordinates: array<array<vec4f, 2>, 11>,

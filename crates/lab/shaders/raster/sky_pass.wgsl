@@ -19,5 +19,5 @@ fn sky(@builtin(position) position: vec4f) -> @location(0) vec4f {
     if ALBEDO {
         return vec4f(vec3f(0.0), 1.0);
     }
-    return vec4f(clamp(sky_radiance(direction, 0.0), vec3f(0.0), vec3f(MAX_COLOR)), 1.0);
+    return vec4f(clamp(sky_radiance(direction, 0.0), vec3f(0.0), vec3f(LARGEST_HALF)), 1.0);
 }

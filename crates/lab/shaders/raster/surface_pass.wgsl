@@ -2,9 +2,6 @@
 //#use raster_material
 // Depth and motion of the first surface. Motion is previous minus current position in pixels, y down.
 
-// Motion of points behind the previous camera.
-const OFF_FRAME_PX: f32 = 1e6;
-
 struct MotionVarying {
     @builtin(position) position: vec4f,
     @location(0) now: vec3f,
@@ -18,14 +15,6 @@ fn motion_vertex(vertex: Vertex) -> MotionVarying {
     let now = homogeneous_px(frame.current, from_eye(frame.current, vertex.position));
     let before = homogeneous_px(frame.previous, from_eye(frame.previous, vertex.before));
     return MotionVarying(clip(now), now, before, vertex.uvs, vertex.color);
-}
-
-fn moved(now: vec3f, before: vec3f) -> vec2f {
-    if before.z <= 0.0 {
-        return vec2f(OFF_FRAME_PX);
-    }
-    let off = vec2f(OFF_FRAME_PX);
-    return clamp(before.xy / before.z - now.xy / now.z, -off, off);
 }
 
 // Both positions are interpolated, instead of subtracting from the pixel's: vertices are snapped to a subpixel grid,

@@ -17,7 +17,7 @@ const TILE_PX: u32 = 2 << TILE_QUADS_LOG2;
 /// Bytes of the arguments of a draw.
 const DRAW_BYTES: u64 = 16;
 /// Place of the arguments of a dispatch in the list of quads, in bytes.
-const LIST_DISPATCH: u64 = 16;
+pub(super) const LIST_DISPATCH: u64 = 16;
 /// Pixels around a chunk's rectangle, for rounding.
 const MARGIN_PX: f64 = 1.0;
 

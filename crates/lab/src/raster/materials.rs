@@ -2,6 +2,7 @@
 
 use super::mipmaps::levels;
 use super::pipelines::{Layouts, SAMPLERS, SLOTS};
+use super::vertices::AlphaKind;
 use crate::device::{bind_group, empty_buffer, texture_desc};
 use crate::scene::shading_records::MaterialRecord;
 use crate::scene::{Coordinates, Material, Scene, Texture, TextureRef, Wrap};
@@ -39,7 +40,7 @@ pub(super) fn bind_groups(
     let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
     let buffer = empty_buffer(device, "materials", stride * materials.len() as u64, usage);
     let groups = materials.iter().enumerate().map(|(i, m)| {
-        let record = MaterialRecord::new(m);
+        let record = MaterialRecord { unused: [i as f32, 0.0], ..MaterialRecord::new(m) };
         queue.write_buffer(&buffer, stride * i as u64, bytemuck::bytes_of(&record));
         let slots = slots(m);
         let coordinates: SlotCoordinates =
@@ -61,6 +62,35 @@ pub(super) fn bind_groups(
         bind_group(device, &m.name, &layouts.material, resources)
     });
     groups.collect()
+}
+
+/// Whether the G-buffer has all that lighting needs of opaque surfaces of these materials: it has neither tangents nor
+/// textures of layers, and 16 bits for the material.
+pub(super) fn are_deferrable(materials: &[Material], device: &Device) -> bool {
+    let is_opaque = |m: &&Material| AlphaKind::of(m) != AlphaKind::Blend;
+    let has_layer_texture = |m: &Material| slots(m)[SAMPLERS..].iter().any(|(slot, _)| slot.is_some());
+    let fits = materials.len() <= device.limits().max_texture_dimension_2d.min(1 << 16) as usize;
+    fits && !materials.iter().filter(is_opaque).any(|m| m.anisotropy > 0.0 || has_layer_texture(m))
+}
+
+/// What lighting needs of materials besides the G-buffer: a row each, at least one. Twin of `surface_of` in
+/// `shaders/raster/lighting_pass.wgsl`.
+pub(super) fn texels(device: &Device, queue: &Queue, materials: &[Material]) -> TextureView {
+    let rows = materials.iter().flat_map(|m| {
+        let MaterialRecord { specular_color: [r, g, b], specular, ior, specular_tint, .. } = MaterialRecord::new(m);
+        let [sheen_r, sheen_g, sheen_b] = m.sheen_color;
+        [
+            [r, g, b, specular],
+            [ior, specular_tint, m.clearcoat, m.clearcoat_roughness],
+            [sheen_r, sheen_g, sheen_b, m.sheen_roughness],
+            [m.sheen_tint, 0.0, 0.0, 0.0],
+        ]
+    });
+    let mut texels: Vec<[f32; 4]> = rows.collect();
+    texels.resize(texels.len().max(4), [0.0; 4]);
+    let size = [4, texels.len() as u32 / 4];
+    let image = Image::from_pixels(size, texels).expect("whole rows");
+    upload_levels(device, queue, "materials", &[image], TextureFormat::Rgba32Float)
 }
 
 /// Rows of the coordinates of all textures of a material, as `raster_material.wgsl` has them.

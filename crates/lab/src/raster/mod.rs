@@ -19,7 +19,9 @@
 //! ([`record_surfaces`](Raster::record_surfaces)), then the color of chosen quads
 //! ([`record_quads`](Raster::record_quads)) or of one pixel of each quad ([`record_half`](Raster::record_half)); or as
 //! quad views ([`record_quad_views`](Raster::record_quad_views)), regions at lower resolutions that a [`Composer`]
-//! enlarges. Triangles outside a view are left out in groups, at full rate as well.
+//! enlarges. With [`Shading::Deferred`] frames with one sample a pixel draw their triangles once, into a G-buffer, and
+//! a compute pass lights the pixels that are shaded. Triangles outside a view are left out in groups, at full rate as
+//! well.
 //!
 //! - **Alpha.** MASK: alpha test against the cutoff; in the color pass, alpha to coverage smooths the edge. BLEND and
 //!   transmissive surfaces: drawn after the sky, back to front by material and by triangle within a material, without
@@ -35,6 +37,8 @@
 mod bounce;
 mod chosen_quads;
 mod compose;
+mod deferred;
+mod deferred_pipelines;
 mod frame;
 mod lighting;
 mod lights;
@@ -62,12 +66,13 @@ use crate::scene::{Environment, Pose, PunctualLight, Scene};
 use afterimage::kernel::pack::half_bits;
 use bytemuck::Zeroable;
 use chosen_quads::ChunkTest;
+use deferred_pipelines::{Deferred, DeferredPipelines};
 use lighting::Lighting;
 use materials::upload_levels;
 use pipelines::{ColorPipelines, Layouts, Pipelines};
 use std::cell::OnceCell;
 use std::sync::LazyLock;
-use vertices::{Blended, Chunks, GroupedTriangles, STRIDE, Vertex};
+use vertices::{AlphaKind, Blended, Chunks, GroupedTriangles, STRIDE, Vertex};
 use wgpu::{BindGroup, Buffer, BufferUsages, Device, Queue, TextureFormat, TextureView};
 
 /// Settings of the rasterizer.
@@ -78,11 +83,26 @@ pub struct RasterSettings {
     pub anisotropy: u16,
     /// Side of the sun's shadow map in texels, 1 to 8192. Default 2048.
     pub shadow_side: u32,
+    /// Where surfaces are lit. Default [`Shading::Forward`].
+    pub shading: Shading,
+}
+
+/// Where surfaces are lit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shading {
+    /// As they are drawn: a planned frame draws its triangles twice, for depth and motion and for color, and once more
+    /// for albedo.
+    #[default]
+    Forward,
+    /// Frames with one sample a pixel draw all that lighting needs into a G-buffer, once, and a compute pass lights the
+    /// pixels that are shaded. Scenes with anisotropic highlights or textures of specular strength or color, clear coat
+    /// or sheen are drawn forward; in all scenes, blended surfaces are.
+    Deferred,
 }
 
 impl Default for RasterSettings {
     fn default() -> Self {
-        Self { anisotropy: 16, shadow_side: 2048 }
+        Self { anisotropy: 16, shadow_side: 2048, shading: Shading::Forward }
     }
 }
 
@@ -95,6 +115,8 @@ pub struct Raster {
     point_pipelines: OnceCell<ColorPipelines>,
     /// Pipelines of albedo; none before the first frame that asks for it.
     albedo_pipelines: OnceCell<ColorPipelines>,
+    /// `None` if frames are drawn forward.
+    deferred: Option<Deferred>,
     /// `None` before the first frame that draws to chosen quads.
     chunk_test: OnceCell<ChunkTest>,
     effects: Effects,
@@ -113,6 +135,8 @@ pub struct Raster {
     pending: Option<[Vec<Vertex>; 2]>,
     lights: Vec<PunctualLight>,
     has_sun: bool,
+    /// Whether some surfaces are blended.
+    has_blended: bool,
     /// Whether the shadow map shows an earlier pose.
     is_shadow_stale: bool,
     near: f32,
@@ -157,6 +181,10 @@ impl Raster {
         let materials = materials::bind_groups(device, queue, &layouts, scene, settings.anisotropy.clamp(1, 16));
         let shadow_side = if has_sun { settings.shadow_side.clamp(1, 8192) } else { 1 };
         let shadow = targets::attachment(device, [shadow_side; 2], DEPTH_FORMAT, 1).create_view(&Default::default());
+        let deferred = deferred(device, queue, scene, settings.shading).map(|materials| Deferred {
+            pipelines: DeferredPipelines::new(device, &layouts, effects, has_sun),
+            materials,
+        });
         let (sky, last_level) = sky(device, queue, &lighting.environment);
         let lighting_maps = lighting_maps(device, queue, &layouts, &shadow, &sky);
         let grouped = GroupedTriangles::new(scene.still(), &scene.materials);
@@ -169,6 +197,8 @@ impl Raster {
         let count = 3 * pose.moving.len();
         let moving =
             VertexSet { grouped, buffer: vertex_buffer(device, count), chunks: Chunks::default(), blended: vec![] };
+        let parts = still.grouped.parts.iter().chain(&moving.grouped.parts);
+        let has_blended = parts.into_iter().any(|part| part.kind == AlphaKind::Blend);
         // The near plane is much nearer than anything of interest, but not so near that 1/near overflows.
         let near = (lighting.radius * 1e-4).clamp(1e-6, 1e-2);
         let mut raster = Self {
@@ -176,6 +206,7 @@ impl Raster {
             pipelines,
             point_pipelines: OnceCell::new(),
             albedo_pipelines: OnceCell::new(),
+            deferred,
             chunk_test: OnceCell::new(),
             effects,
             materials,
@@ -189,6 +220,7 @@ impl Raster {
             pending: None,
             lights: vec![],
             has_sun,
+            has_blended,
             is_shadow_stale: true,
             near,
             lighting,
@@ -247,6 +279,12 @@ fn check(scene: &Scene, pose: &Pose, size: [u32; 2], limits: &wgpu::Limits) -> R
         ));
     }
     Ok(())
+}
+
+/// What lighting needs of the materials, if the scene is to be lit from a G-buffer and that has all the rest.
+fn deferred(device: &Device, queue: &Queue, scene: &Scene, shading: Shading) -> Option<TextureView> {
+    let is_deferred = shading == Shading::Deferred && materials::are_deferrable(&scene.materials, device);
+    is_deferred.then(|| materials::texels(device, queue, &scene.materials))
 }
 
 /// A buffer with room for `vertices`; at least one.

@@ -27,6 +27,10 @@ pub(super) struct Layouts {
     pub lighting_maps: BindGroupLayout,
     /// Group 1 of [`Pipelines::quads`].
     pub quads: BindGroupLayout,
+    /// Group 1 of the lighting of a G-buffer.
+    pub g_buffer: BindGroupLayout,
+    /// Group 2 of [`DeferredPipelines::quads`](super::deferred_pipelines::DeferredPipelines::quads).
+    pub opaque_depth: BindGroupLayout,
 }
 
 #[derive(Debug)]
@@ -71,18 +75,8 @@ impl ColorPipelines {
         is_albedo: bool,
     ) -> Self {
         let [color, sky] = ["color_pass", "sky_pass"].map(|name| shader(device, name));
-        let mut shading = constants(
-            effects,
-            &[
-                ("BASE_COLOR_TEXTURE", Effect::BaseColor),
-                ("SURFACE_TEXTURE", Effect::SurfaceTexture),
-                ("NORMAL_MAP", Effect::NormalMap),
-                ("EMISSIVE_TEXTURE", Effect::EmissiveTexture),
-                ("TEXTURE_COORDINATES", Effect::TextureCoordinates),
-            ],
-        );
-        shading.extend(effects.lobe_constants());
-        shading.push(("HAS_SUN", f64::from(u8::from(has_sun))));
+        let mut shading = point_constants(effects);
+        shading.extend(lighting_constants(effects, has_sun));
         let albedo = [("ALBEDO", f64::from(u8::from(is_albedo)))];
         shading.extend(albedo);
         let mut tested = shading.clone();
@@ -118,7 +112,24 @@ impl ColorPipelines {
     }
 }
 
-fn shader(device: &Device, name: &str) -> ShaderModule {
+/// Constants of `raster_point`: what textures say of a point.
+pub(super) fn point_constants(effects: Effects) -> Vec<(&'static str, f64)> {
+    let list = [
+        ("BASE_COLOR_TEXTURE", Effect::BaseColor),
+        ("SURFACE_TEXTURE", Effect::SurfaceTexture),
+        ("NORMAL_MAP", Effect::NormalMap),
+        ("EMISSIVE_TEXTURE", Effect::EmissiveTexture),
+        ("TEXTURE_COORDINATES", Effect::TextureCoordinates),
+    ];
+    constants(effects, &list)
+}
+
+/// Constants of `raster_lighting`: how a point is lit.
+pub(super) fn lighting_constants(effects: Effects, has_sun: bool) -> impl Iterator<Item = (&'static str, f64)> {
+    effects.lobe_constants().chain([("HAS_SUN", f64::from(u8::from(has_sun)))])
+}
+
+pub(super) fn shader(device: &Device, name: &str) -> ShaderModule {
     device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(name),
         source: wgpu::ShaderSource::Wgsl(SHADERS.compose(name).source.into()),
@@ -180,34 +191,37 @@ fn constants(effects: Effects, list: &[(&'static str, Effect)]) -> Vec<(&'static
 
 /// Parameters that differ between pipelines.
 #[derive(Clone, Copy)]
-struct Recipe<'a> {
-    module: &'a ShaderModule,
-    vertex: &'a str,
-    fragment: Option<&'a str>,
-    constants: &'a [(&'static str, f64)],
+pub(super) struct Recipe<'a> {
+    pub module: &'a ShaderModule,
+    pub vertex: &'a str,
+    pub fragment: Option<&'a str>,
+    pub constants: &'a [(&'static str, f64)],
     /// `None` for depth only.
-    format: Option<TextureFormat>,
+    pub format: Option<TextureFormat>,
+    /// Targets after the first one, and what is written to them.
+    pub others: &'a [(TextureFormat, ColorWrites)],
     /// Whether depth is written.
-    depth: bool,
-    compare: CompareFunction,
-    bias: DepthBiasState,
-    blend: Option<BlendState>,
-    writes: ColorWrites,
+    pub depth: bool,
+    pub compare: CompareFunction,
+    pub bias: DepthBiasState,
+    pub blend: Option<BlendState>,
+    pub writes: ColorWrites,
     /// Alpha to coverage.
-    coverage: bool,
-    samples: u32,
+    pub coverage: bool,
+    pub samples: u32,
     /// Whether vertex buffers are read.
-    vertices: bool,
+    pub vertices: bool,
 }
 
 impl<'a> Recipe<'a> {
-    fn new(module: &'a ShaderModule, vertex: &'a str, fragment: Option<&'a str>, format: TextureFormat) -> Self {
+    pub fn new(module: &'a ShaderModule, vertex: &'a str, fragment: Option<&'a str>, format: TextureFormat) -> Self {
         Self {
             module,
             vertex,
             fragment,
             constants: &[],
             format: Some(format),
+            others: &[],
             depth: true,
             compare: CompareFunction::GreaterEqual,
             bias: DepthBiasState::default(),
@@ -219,15 +233,16 @@ impl<'a> Recipe<'a> {
         }
     }
 
-    fn make(&self, device: &Device, groups: &[Option<&BindGroupLayout>]) -> RenderPipeline {
+    pub fn make(&self, device: &Device, groups: &[Option<&BindGroupLayout>]) -> RenderPipeline {
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(self.vertex),
             bind_group_layouts: groups,
             ..Default::default()
         });
         let options = || wgpu::PipelineCompilationOptions { constants: self.constants, ..Default::default() };
-        let targets =
-            self.format.map(|format| [Some(ColorTargetState { format, blend: self.blend, write_mask: self.writes })]);
+        let target = |blend, (format, write_mask)| Some(ColorTargetState { format, blend, write_mask });
+        let first = self.format.map(|format| target(self.blend, (format, self.writes)));
+        let targets: Vec<_> = first.into_iter().chain(self.others.iter().map(|&other| target(None, other))).collect();
         let buffers = LAYOUTS.map(Into::into);
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: self.fragment.or(Some(self.vertex)),
@@ -256,7 +271,7 @@ impl<'a> Recipe<'a> {
                 module: self.module,
                 entry_point: Some(entry),
                 compilation_options: options(),
-                targets: targets.as_ref().map_or(&[], |t| &t[..]),
+                targets: &targets,
             }),
             multiview_mask: None,
             cache: None,
@@ -285,23 +300,34 @@ impl Layouts {
         let make = |label, entries: &[BindGroupLayoutEntry]| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
-        let both = ShaderStages::VERTEX_FRAGMENT;
-        let fragment = ShaderStages::FRAGMENT;
+        let all = ShaderStages::VERTEX_FRAGMENT | ShaderStages::COMPUTE;
+        let (fragment, compute) = (ShaderStages::FRAGMENT, ShaderStages::COMPUTE);
+        let lit = fragment | compute;
+        let exact = texture(TextureSampleType::Float { filterable: false });
+        let color = BindingType::StorageTexture {
+            access: wgpu::StorageTextureAccess::WriteOnly,
+            format: COLOR_FORMAT,
+            view_dimension: TextureViewDimension::D2,
+        };
+        let kept = [texture(TextureSampleType::Depth), exact, texture(TextureSampleType::Uint), exact, color];
+        let kept: Vec<_> = (0..).zip(kept).map(|(binding, ty)| entry(binding, compute, ty)).collect();
         let textures = (0..SLOTS).flat_map(|i| [Some(filtered), (i < SAMPLERS).then_some(sampler)]).flatten();
         let material = (0..).zip(std::iter::once(storage).chain(textures));
         let material: Vec<_> = material.map(|(binding, ty)| entry(binding, fragment, ty)).collect();
         Self {
-            frame: make("frame", &[entry(0, both, uniform), entry(1, both, storage)]),
+            frame: make("frame", &[entry(0, all, uniform), entry(1, all, storage)]),
             material: make("material", &material),
-            quads: make("quads", &[entry(0, ShaderStages::VERTEX, storage)]),
+            quads: make("quads", &[entry(0, ShaderStages::VERTEX | compute, storage)]),
+            g_buffer: make("g-buffer", &kept),
+            opaque_depth: make("opaque depth", &[entry(0, fragment, texture(TextureSampleType::Depth))]),
             lighting_maps: make(
                 "lighting_maps",
                 &[
-                    entry(0, fragment, texture(TextureSampleType::Depth)),
-                    entry(1, fragment, BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
-                    entry(2, fragment, filtered),
-                    entry(3, fragment, sampler),
-                    entry(4, fragment, texture(TextureSampleType::Uint)),
+                    entry(0, lit, texture(TextureSampleType::Depth)),
+                    entry(1, lit, BindingType::Sampler(wgpu::SamplerBindingType::Comparison)),
+                    entry(2, lit, filtered),
+                    entry(3, lit, sampler),
+                    entry(4, lit, texture(TextureSampleType::Uint)),
                 ],
             ),
         }

@@ -19,27 +19,30 @@ use wgpu::{
 };
 
 /// Reversed depth of the near and the far plane.
-const FAR_PLANE: f32 = 0.0;
-const NEAR_PLANE: f32 = 1.0;
+pub(super) const FAR_PLANE: f32 = 0.0;
+pub(super) const NEAR_PLANE: f32 = 1.0;
 
 /// Index range of blended triangles with one material.
-struct Run {
+pub(super) struct Run {
     is_moving: bool,
     material: u32,
     indices: Range<u32>,
 }
 
+/// Index buffer of the blended triangles, and its draws.
+pub(super) type BackToFront = (Option<Buffer>, Vec<Run>);
+
 /// A window with its uniforms and draw calls.
-struct Section {
+pub(super) struct Section {
     window: Window,
-    group: BindGroup,
-    calls: Vec<DrawCall>,
+    pub group: BindGroup,
+    pub calls: Vec<DrawCall>,
     /// The quads of 2x2 pixels that are drawn to, if not all.
     quads: Option<ChosenQuads>,
 }
 
 impl Section {
-    fn set_up(&self, pass: &mut RenderPass<'_>) {
+    pub fn set_up(&self, pass: &mut RenderPass<'_>) {
         let Window { origin: [x, y], size, scissor: [corner, extent], .. } = self.window;
         let [w, h] = size.map(|v| v as f32);
         pass.set_viewport(x, y, w, h, 0.0, 1.0);
@@ -73,28 +76,40 @@ impl Raster {
         views: [&View; 2],
         targets: &FoveatedTargets,
     ) {
+        if self.deferred.is_some() {
+            self.record_surfaces(device, encoder, views, Some(targets));
+            return self.record_light(device, encoder, views, None, targets);
+        }
         let window = Window::full(views[0].geometry().size_px()).with_points();
         self.record_windows(device, encoder, views, std::iter::once(window), targets);
     }
 
     /// Records the color of one pixel of each quad of 2x2 pixels, with one sample, into the color of `targets` of half
-    /// the width and height. `place_px`: the pixel's place in its quad.
+    /// the width and height. `place_px`: the pixel's place in its quad. `surfaces`: targets of
+    /// [`record_surfaces`](Self::record_surfaces) of the same frame, if there are any; deferred frames without blended
+    /// surfaces are lit from them.
     pub fn record_half(
         &mut self,
         device: &Device,
         encoder: &mut CommandEncoder,
         [view, previous]: [&View; 2],
         place_px: [u32; 2],
-        targets: &FoveatedTargets,
+        (targets, surfaces): (&FoveatedTargets, Option<&FoveatedTargets>),
     ) {
         self.upload(device, encoder);
-        let section = self.section(device, [view, previous], Window::half(view.geometry().size_px(), place_px));
+        let window = Window::half(view.geometry().size_px(), place_px);
+        if let (true, Some(surfaces)) = (self.deferred.is_some() && !self.has_blended, surfaces) {
+            let group = self.frame_uniforms(device, [view, previous], &window);
+            self.shadows(encoder, &group);
+            return self.light_pass(device, encoder, &group, None, (surfaces, &targets.atlas.views[0]));
+        }
+        let section = self.section(device, [view, previous], window);
         self.shadows(encoder, &section.group);
         let blended = self.back_to_front(device, view);
-        let FoveatedTargets { atlas: Targets { views: [color, ..], .. }, point_depth } = targets;
+        let FoveatedTargets { atlas: Targets { views: [color, ..], .. }, point_depth_view, .. } = targets;
         let target = target(color, None, LoadOp::Clear(Color::BLACK));
         let pipelines = self.point_pipelines(device);
-        self.color_pass(encoder, target, point_depth, pipelines, &[section], &blended);
+        self.color_pass(encoder, target, point_depth_view, pipelines, &[section], &blended);
     }
 
     /// Records quad views, which lie in an atlas ([`AtlasLayout::place_views`](super::AtlasLayout::place_views)), in
@@ -132,7 +147,7 @@ impl Raster {
         }
         let sections: Vec<Section> = windows.map(|w| self.section(device, [view, previous], w)).collect();
         let (full, points) = sections.split_at(sections.partition_point(|s| !s.window.is_point));
-        let FoveatedTargets { atlas, point_depth } = targets;
+        let FoveatedTargets { atlas, point_depth_view, .. } = targets;
         let Targets { views: [color, depth, motion], samples: [samples, sample_depth], .. } = atlas;
         self.surface_pass(encoder, [depth, motion], &sections);
         let blended = self.back_to_front(device, view);
@@ -146,11 +161,13 @@ impl Raster {
             return;
         }
         let point_pipelines = self.point_pipelines(device);
-        self.color_pass(encoder, target(color, None, load), point_depth, point_pipelines, points, &blended);
+        self.color_pass(encoder, target(color, None, load), point_depth_view, point_pipelines, points, &blended);
     }
 
     /// Records the color of some quads of 2x2 pixels of the full-rate frame, with one sample per pixel, into the color
-    /// of `targets`. Other pixels are black. `list`: the quads, in the form of `gpu::Afterimage::quad_list`.
+    /// of `targets`. Other pixels are black. `list`: the quads, in the form of `gpu::Afterimage::quad_list`. Deferred
+    /// frames are lit from the surfaces of the same frame, which [`record_surfaces`](Self::record_surfaces) left in
+    /// `targets`.
     pub fn record_quads(
         &mut self,
         device: &Device,
@@ -159,6 +176,9 @@ impl Raster {
         list: &Buffer,
         targets: &FoveatedTargets,
     ) {
+        if self.deferred.is_some() {
+            return self.record_light(device, encoder, [view, previous], Some(list), targets);
+        }
         self.upload(device, encoder);
         let window = Window::full(view.geometry().size_px()).with_points();
         let calls = self.chunk_calls(Some(&Frustum::new(view, &window)));
@@ -169,15 +189,16 @@ impl Raster {
         let section = Section { window, group, calls, quads: Some(quads) };
         self.shadows(encoder, &section.group);
         let blended = self.back_to_front(device, view);
-        let FoveatedTargets { atlas: Targets { views: [color, ..], .. }, point_depth } = targets;
+        let FoveatedTargets { atlas: Targets { views: [color, ..], .. }, point_depth_view, .. } = targets;
         let target = target(color, None, LoadOp::Clear(Color::BLACK));
         let pipelines = self.point_pipelines(device);
-        self.color_pass(encoder, target, point_depth, pipelines, &[section], &blended);
+        self.color_pass(encoder, target, point_depth_view, pipelines, &[section], &blended);
     }
 
-    /// Records the albedo of every pixel of the full-rate frame, with one sample at its centre, into the color of
-    /// `targets`: the share of uniform light that its surface returns, 0 in the sky. Blended surfaces have theirs by
-    /// their opacity.
+    /// Records the albedo of every pixel of the full-rate frame, with one sample at its centre, into the albedo
+    /// of `targets`: the share of uniform light that its surface returns, 0 in the sky. Blended surfaces have theirs by
+    /// their opacity. Deferred frames read the surfaces of the same frame, which
+    /// [`record_surfaces`](Self::record_surfaces) left in `targets`.
     pub fn record_albedo(
         &mut self,
         device: &Device,
@@ -187,22 +208,27 @@ impl Raster {
     ) {
         self.upload(device, encoder);
         let window = Window::full(view.geometry().size_px()).with_points();
+        if self.deferred.is_some() {
+            return self.deferred_albedo(device, encoder, [view, previous], window, targets);
+        }
         let section = self.section(device, [view, previous], window);
         let blended = self.back_to_front(device, view);
-        let FoveatedTargets { atlas: Targets { views: [color, ..], .. }, point_depth } = targets;
-        let new = || ColorPipelines::albedo(device, &self.layouts, self.effects);
-        let pipelines = self.albedo_pipelines.get_or_init(new);
-        let target = target(color, None, LoadOp::Clear(Color::BLACK));
-        self.color_pass(encoder, target, point_depth, pipelines, &[section], &blended);
+        let target = target(targets.albedo_view(device), None, LoadOp::Clear(Color::BLACK));
+        let pipelines = self.albedo_pipelines(device);
+        self.color_pass(encoder, target, &targets.point_depth_view, pipelines, &[section], &blended);
     }
 
-    fn point_pipelines(&self, device: &Device) -> &ColorPipelines {
+    pub(super) fn albedo_pipelines(&self, device: &Device) -> &ColorPipelines {
+        self.albedo_pipelines.get_or_init(|| ColorPipelines::albedo(device, &self.layouts, self.effects))
+    }
+
+    pub(super) fn point_pipelines(&self, device: &Device) -> &ColorPipelines {
         let new = || ColorPipelines::new(device, &self.layouts, self.effects, self.has_sun, 1);
         self.point_pipelines.get_or_init(new)
     }
 
     /// Records depth and motion of a full-rate frame, without its color, in `targets` or, if that is `None`, in those
-    /// of full-rate frames.
+    /// of full-rate frames. Deferred frames keep in `targets` what lighting needs of the surfaces.
     pub fn record_surfaces(
         &mut self,
         device: &Device,
@@ -214,6 +240,9 @@ impl Raster {
         let window = Window::full(view.geometry().size_px());
         let window = if targets.is_some() { window.with_points() } else { window };
         let section = self.section(device, [view, previous], window);
+        if let (Some(deferred), Some(targets)) = (&self.deferred, targets) {
+            return self.g_buffer_pass(deferred, device, encoder, &section, targets);
+        }
         let Targets { views: [_, depth, motion], .. } = targets.map_or(&self.targets, |targets| &targets.atlas);
         self.surface_pass(encoder, [depth, motion], &[section]);
     }
@@ -224,7 +253,12 @@ impl Raster {
         Section { group: self.frame_uniforms(device, [view, previous], &window), calls, window, quads: None }
     }
 
-    fn frame_uniforms(&self, device: &Device, [view, previous]: [&View; 2], window: &Window) -> BindGroup {
+    /// A window without draw calls.
+    pub(super) fn empty_section(&self, device: &Device, views: [&View; 2], window: Window) -> Section {
+        Section { group: self.frame_uniforms(device, views, &window), calls: vec![], window, quads: None }
+    }
+
+    pub(super) fn frame_uniforms(&self, device: &Device, [view, previous]: [&View; 2], window: &Window) -> BindGroup {
         let frame = FrameUniforms::new(view, previous, self.near, window);
         let lights = self.lighting.record(&self.lights, self.last_level, self.shadow_side);
         let buffers = [
@@ -234,8 +268,16 @@ impl Raster {
         bind_group(device, "frame", &self.layouts.frame, buffers.each_ref().map(Buffer::as_entire_binding))
     }
 
+    /// Records the shadow map anew, as if the scene had moved.
+    pub fn record_shadows(&mut self, device: &Device, encoder: &mut CommandEncoder, views: [&View; 2]) {
+        self.upload(device, encoder);
+        self.is_shadow_stale = true;
+        let group = self.frame_uniforms(device, views, &Window::full(views[0].geometry().size_px()));
+        self.shadows(encoder, &group);
+    }
+
     /// Draws the shadow map anew if the scene moved. `group`: uniforms of the full-rate frame.
-    fn shadows(&mut self, encoder: &mut CommandEncoder, group: &BindGroup) {
+    pub(super) fn shadows(&mut self, encoder: &mut CommandEncoder, group: &BindGroup) {
         if self.has_sun && self.is_shadow_stale {
             self.sun_pass(encoder, group);
             self.is_shadow_stale = false;
@@ -243,7 +285,7 @@ impl Raster {
     }
 
     /// Uploads vertices that moved since the last frame.
-    fn upload(&mut self, device: &Device, encoder: &mut CommandEncoder) {
+    pub(super) fn upload(&mut self, device: &Device, encoder: &mut CommandEncoder) {
         let Some([now, before]) = self.pending.take() else { return };
         for (to, vertices) in [(&self.moving.buffer, now), (&self.previous, before)] {
             let from = filled(device, "raster frame", bytemuck::cast_slice(&vertices), BufferUsages::COPY_SRC);
@@ -283,7 +325,7 @@ impl Raster {
         depth: &TextureView,
         pipelines: &ColorPipelines,
         sections: &[Section],
-        (indices, runs): &(Option<Buffer>, Vec<Run>),
+        blended: &BackToFront,
     ) {
         let has_quads = sections.iter().any(|section| section.quads.is_some());
         let behind = if has_quads { NEAR_PLANE } else { FAR_PLANE };
@@ -310,14 +352,23 @@ impl Raster {
             pass.set_bind_group(1, &self.materials[0], &[]);
             pass.set_pipeline(&pipelines.sky);
             pass.draw(0..3, 0..1);
-            if let Some(indices) = indices {
-                pass.set_pipeline(pipelines.surfaces(AlphaKind::Blend));
-                pass.set_index_buffer(indices.slice(..), IndexFormat::Uint32);
-                for run in runs {
-                    self.bind(&mut pass, run.is_moving, run.material);
-                    pass.draw_indexed(run.indices.clone(), 0, 0..1);
-                }
-            }
+            self.draw_blended(&mut pass, pipelines, blended);
+        }
+    }
+
+    /// Draws the blended surfaces, back to front.
+    pub(super) fn draw_blended(
+        &self,
+        pass: &mut RenderPass<'_>,
+        pipelines: &ColorPipelines,
+        (indices, runs): &BackToFront,
+    ) {
+        let Some(indices) = indices else { return };
+        pass.set_pipeline(pipelines.surfaces(AlphaKind::Blend));
+        pass.set_index_buffer(indices.slice(..), IndexFormat::Uint32);
+        for run in runs {
+            self.bind(pass, run.is_moving, run.material);
+            pass.draw_indexed(run.indices.clone(), 0, 0..1);
         }
     }
 
@@ -357,7 +408,7 @@ impl Raster {
         pass.set_vertex_buffer(1, if is_moving { &self.previous } else { &set.buffer }.slice(..));
     }
 
-    fn draw(&self, pass: &mut RenderPass<'_>, call: &DrawCall) {
+    pub(super) fn draw(&self, pass: &mut RenderPass<'_>, call: &DrawCall) {
         self.bind(pass, call.is_moving, call.material);
         pass.draw(call.vertices.clone(), 0..1);
     }
@@ -366,7 +417,7 @@ impl Raster {
     /// their triangles' centroids along the view axis, farthest first; triangles within a group likewise. Sorting per
     /// group instead of per triangle allows one draw per group; interlocked groups may therefore blend in the wrong
     /// order.
-    fn back_to_front(&self, device: &Device, view: &View) -> (Option<Buffer>, Vec<Run>) {
+    pub(super) fn back_to_front(&self, device: &Device, view: &View) -> BackToFront {
         let at = view.world_from_camera().w_axis.truncate().as_vec3();
         let ahead = -view.world_from_camera().z_axis.truncate().as_vec3();
         let mut groups = vec![];
@@ -394,7 +445,7 @@ impl Raster {
 }
 
 /// A color target of a pass; with `resolved`, only the mean of its samples is kept, there.
-fn target<'v>(
+pub(super) fn target<'v>(
     view: &'v TextureView,
     resolved: Option<&'v TextureView>,
     load: LoadOp<Color>,
@@ -410,12 +461,24 @@ fn begin<'e>(
     (depth, behind): (&TextureView, f32),
     keep_depth: StoreOp,
 ) -> RenderPass<'e> {
+    let colors = if color.is_some() { std::slice::from_ref(&color) } else { &[] };
+    begin_with(encoder, label, colors, (depth, LoadOp::Clear(behind)), keep_depth)
+}
+
+/// A pass with several color targets, or with the depth of an earlier one.
+pub(super) fn begin_with<'e>(
+    encoder: &'e mut CommandEncoder,
+    label: &str,
+    colors: &[Option<RenderPassColorAttachment<'_>>],
+    (depth, load): (&TextureView, LoadOp<f32>),
+    store: StoreOp,
+) -> RenderPass<'e> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some(label),
-        color_attachments: if color.is_some() { std::slice::from_ref(&color) } else { &[] },
+        color_attachments: colors,
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view: depth,
-            depth_ops: Some(Operations { load: LoadOp::Clear(behind), store: keep_depth }),
+            depth_ops: Some(Operations { load, store }),
             stencil_ops: None,
         }),
         ..Default::default()

@@ -4,7 +4,11 @@ use super::pipelines::{COLOR_FORMAT, DEPTH_FORMAT, MOTION_FORMAT, SAMPLES};
 use crate::device::{Headless, texture_desc};
 use afterimage::Image;
 use afterimage::kernel::pack::half_value;
+use std::cell::OnceCell;
 use wgpu::{Device, Texture, TextureFormat, TextureUsages, TextureView};
+
+/// Formats of the G-buffer besides depth and motion: base color and metalness; words (`shaders/raster/g_buffer.wgsl`).
+pub(super) const KEPT_FORMATS: [TextureFormat; 2] = [TextureFormat::Rgba8Unorm, TextureFormat::Rgba32Uint];
 
 /// Textures of a frame. They can be bound by later passes and copied.
 #[derive(Debug)]
@@ -62,15 +66,54 @@ pub(crate) fn read_distance(device: &Headless, texture: &Texture, near: f32) -> 
 pub struct FoveatedTargets {
     /// Atlases of color, depth and motion. Motion is in pixels of the full-rate frame.
     pub atlas: Targets,
-    /// Depth of color with one sample per pixel.
-    pub(super) point_depth: TextureView,
+    /// Depth of color with one sample per pixel; in deferred frames that have blended surfaces, of the opaque ones.
+    pub(super) point_depth: Texture,
+    pub(super) point_depth_view: TextureView,
+    kept: OnceCell<[TextureView; 2]>,
+    closed_depth: OnceCell<TextureView>,
+    albedo: OnceCell<(Texture, TextureView)>,
 }
 
 impl FoveatedTargets {
     /// Targets for atlases of at most `size` texels.
     pub fn new(device: &Device, size: [u32; 2]) -> Self {
-        let point_depth = attachment(device, size, DEPTH_FORMAT, 1).create_view(&Default::default());
-        Self { atlas: Targets::new(device, size), point_depth }
+        let point_depth = attachment(device, size, DEPTH_FORMAT, 1);
+        let point_depth_view = point_depth.create_view(&Default::default());
+        let atlas = Targets::new(device, size);
+        let (kept, closed_depth, albedo) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
+        Self { atlas, point_depth, point_depth_view, kept, closed_depth, albedo }
+    }
+
+    /// Texture of albedo, of the format of color.
+    pub fn albedo(&self, device: &Device) -> &Texture {
+        &self.albedo_target(device).0
+    }
+
+    pub(super) fn albedo_view(&self, device: &Device) -> &TextureView {
+        &self.albedo_target(device).1
+    }
+
+    fn albedo_target(&self, device: &Device) -> &(Texture, TextureView) {
+        self.albedo.get_or_init(|| {
+            let texture = attachment(device, [self.atlas.color.width(), self.atlas.color.height()], COLOR_FORMAT, 1);
+            let view = texture.create_view(&Default::default());
+            (texture, view)
+        })
+    }
+
+    fn attachment_view(&self, device: &Device, format: TextureFormat) -> TextureView {
+        let size = [self.atlas.color.width(), self.atlas.color.height()];
+        attachment(device, size, format, 1).create_view(&Default::default())
+    }
+
+    /// Base colors and words of the G-buffer, which has depth and motion of the atlas.
+    pub(super) fn kept(&self, device: &Device) -> &[TextureView; 2] {
+        self.kept.get_or_init(|| KEPT_FORMATS.map(|format| self.attachment_view(device, format)))
+    }
+
+    /// Depth of the opaque surfaces in chosen quads, and of the near plane elsewhere.
+    pub(super) fn closed_depth(&self, device: &Device) -> &TextureView {
+        self.closed_depth.get_or_init(|| self.attachment_view(device, DEPTH_FORMAT))
     }
 
     /// Replaces the targets by larger ones if an atlas of `size` texels does not fit.
@@ -82,9 +125,10 @@ impl FoveatedTargets {
     }
 }
 
-/// A render target. With one sample, it can also be bound and copied.
+/// A render target. With one sample, it can also be bound and copied, and color be written by compute passes.
 pub(super) fn attachment(device: &Device, size: [u32; 2], format: TextureFormat, samples: u32) -> Texture {
-    let one = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
+    let stored = if format == COLOR_FORMAT { TextureUsages::STORAGE_BINDING } else { TextureUsages::empty() };
+    let one = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC | TextureUsages::COPY_DST | stored;
     let usage = TextureUsages::RENDER_ATTACHMENT | if samples == 1 { one } else { TextureUsages::empty() };
     let desc = texture_desc("raster target", size, format, usage);
     device.create_texture(&wgpu::TextureDescriptor { sample_count: samples, ..desc })

@@ -12,7 +12,7 @@ use crate::frame::{
 };
 use crate::quad_views::QuadViews;
 use crate::raster::{
-    AtlasLayout, Composer, FoveatedTargets, Raster, RasterSettings, Targets, read_color, read_distance,
+    AtlasLayout, Composer, FoveatedTargets, Raster, RasterSettings, Shading, Targets, read_color, read_distance,
 };
 use crate::scene::Scene;
 use crate::view::View;
@@ -29,10 +29,18 @@ impl ViewedScene {
     /// [`Request`](InputError::Request) if the device cannot draw the frame's size; [`Limit`](InputError::Limit) if the
     /// scene has more triangles than the device holds.
     pub fn on(&self, device: Arc<Headless>) -> Result<RasterSource, InputError> {
+        self.shaded_on(device, Shading::default())
+    }
+
+    /// As [`on`](Self::on), lit as `shading` says.
+    ///
+    /// # Errors
+    /// As for [`on`](Self::on).
+    pub fn shaded_on(&self, device: Arc<Headless>, shading: Shading) -> Result<RasterSource, InputError> {
         let defaults = RasterSettings::default();
         // With an anisotropy of 16, a software device takes ten times as long for a frame of Sponza.
         let anisotropy = if device.is_software() { 1 } else { defaults.anisotropy };
-        self.on_with(device, RasterSettings { anisotropy, ..defaults })
+        self.on_with(device, RasterSettings { anisotropy, shading, ..defaults })
     }
 
     fn on_with(&self, device: Arc<Headless>, settings: RasterSettings) -> Result<RasterSource, InputError> {
@@ -166,7 +174,13 @@ impl RasterSource {
                 (OnDevice::Composed(self.record_quad_views(encoder, views, quads, layout)), Some(quads.pixels()))
             }
             // Each method chooses its own samples.
-            Wanted::Surfaces => (OnDevice::Surfaces(self.record_surfaces(encoder, views)), None),
+            Wanted::Surfaces => {
+                let surfaces = self.record_surfaces(encoder, views);
+                if request.albedo && self.raster.is_deferred() {
+                    self.record_albedo_of(encoder, views);
+                }
+                (OnDevice::Surfaces(surfaces), None)
+            }
         };
         RenderedFrame { content: content.into(), jitter_px, samples, ..frame }
     }
@@ -250,6 +264,41 @@ impl RasterSource {
         on_device(&self.device, &targets.atlas, self.raster.near())
     }
 
+    /// Albedo of every pixel. Deferred frames must have drawn the same surfaces last.
+    fn record_albedo_of(&mut self, encoder: &mut CommandEncoder, views: [&View; 2]) -> Texture {
+        let device = &self.device.device;
+        let targets = fitted(&mut self.points, device, self.of.info().size);
+        self.raster.record_albedo(device, encoder, views, targets);
+        targets.albedo(device).clone()
+    }
+
+    /// Records the albedo of every pixel of frame `index`, whose depth and motion were rendered last. The texture is
+    /// drawn to again with the next frame.
+    pub fn record_albedo(&mut self, encoder: &mut CommandEncoder, index: u64, jitter_px: [f32; 2]) -> Texture {
+        let [view, previous] = self.jittered_views(index, jitter_px);
+        self.record_albedo_of(encoder, [&view, &previous])
+    }
+
+    /// Records the full-rate frame `index` with one sample a pixel, in the pose that was rendered last.
+    pub fn record_points(&mut self, encoder: &mut CommandEncoder, index: u64, jitter_px: [f32; 2]) -> DeviceFrame {
+        let [view, previous] = self.jittered_views(index, jitter_px);
+        let device = &self.device.device;
+        let targets = fitted(&mut self.points, device, self.of.info().size);
+        self.raster.record_points(device, encoder, [&view, &previous], targets);
+        on_device(&self.device, &targets.atlas, self.raster.near())
+    }
+
+    /// Records the shadow map of frame `index` anew, as if the scene had moved.
+    pub fn record_shadows(&mut self, encoder: &mut CommandEncoder, index: u64) {
+        let [view, previous] = self.of.views(index).0;
+        self.raster.record_shadows(&self.device.device, encoder, [&view, &previous]);
+    }
+
+    /// Whether frames with one sample a pixel are deferred ([`Shading::Deferred`]).
+    pub fn is_deferred(&self) -> bool {
+        self.raster.is_deferred()
+    }
+
     /// Records the color of chosen quads of frame `index`, whose depth and motion were rendered last. `list`: the
     /// quads, in the form of `gpu::Afterimage::quad_list`. The texture is drawn to again with the next frame.
     pub fn record_quads(
@@ -278,7 +327,7 @@ impl RasterSource {
         let [view, previous] = self.jittered_views(index, jitter_px);
         let device = &self.device.device;
         let targets = fitted(&mut self.half, device, self.of.info().size.map(|side| side.div_ceil(2)));
-        self.raster.record_half(device, encoder, [&view, &previous], place_px, targets);
+        self.raster.record_half(device, encoder, [&view, &previous], place_px, (targets, self.points.as_ref()));
         targets.atlas.color.clone()
     }
 
@@ -295,10 +344,10 @@ impl RasterSource {
     pub fn albedo(&mut self, index: u64, jitter_px: [f32; 2]) -> Result<Image<[f32; 3]>, InputError> {
         let [view, previous] = self.jittered_views(index, jitter_px);
         let (color, _) = self.submit_timed(|source, encoder| {
-            let device = &source.device.device;
-            let targets = fitted(&mut source.points, device, source.of.info().size);
-            source.raster.record_albedo(device, encoder, [&view, &previous], targets);
-            targets.atlas.color.clone()
+            if source.raster.is_deferred() {
+                source.record_surfaces(encoder, [&view, &previous]);
+            }
+            source.record_albedo_of(encoder, [&view, &previous])
         })?;
         Ok(read_color(&self.device, &color))
     }
@@ -426,8 +475,13 @@ impl FrameSource for RasterSource {
         if !request.albedo {
             return Ok(frame);
         }
-        // Its time is not that of the frame: renderers that give albedo have it beside depth and motion.
-        let albedo = self.albedo(request.index, frame.jitter_px)?;
+        // Deferred frames have it beside depth and motion. Forward ones draw it apart, and their time is without.
+        let albedo = match (&self.points, &request.wanted) {
+            (Some(points), Wanted::Surfaces) if self.is_deferred() => {
+                read_color(&self.device, points.albedo(&self.device.device))
+            }
+            _ => self.albedo(request.index, frame.jitter_px)?,
+        };
         Ok(RenderedFrame { albedo: Some(albedo), ..frame })
     }
 

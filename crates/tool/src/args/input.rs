@@ -6,13 +6,17 @@ use crate::args::{parse_fps, parse_hfov, parse_samples, parse_size};
 use crate::failure::{Failure, warn};
 use afterimage::ViewGeometry;
 use afterimage_lab::device::{Backend, Headless, NO_ADAPTER};
+use afterimage_lab::raster::Shading;
 use afterimage_lab::scanpath::HeadPath;
 use afterimage_lab::scene::{PunctualKind, Scene};
 use afterimage_lab::source;
-use afterimage_lab::source::{FrameSource, Light, ReadLimits, SceneChoice, SceneOptions, SourceInfo, ViewedScene};
+use afterimage_lab::source::{
+    FrameSource, Light, RasterSource, ReadLimits, SceneChoice, SceneOptions, SourceInfo, ViewedScene,
+};
 use afterimage_trace::sampling::Sampling;
 use afterimage_trace::{TracedSamples, TracedSource};
 use clap::{Args, ValueEnum};
+use std::sync::Arc;
 
 /// Heading of these options in the help.
 const HEADING: &str = "Input";
@@ -36,6 +40,10 @@ pub struct InputArgs {
     /// Renderer of a scene; default: raster
     #[arg(long, value_enum, value_name = "NAME", help_heading = HEADING)]
     pub source: Option<SourceName>,
+    /// Where surfaces of --source raster are lit: as they are drawn, or, in frames with one sample a pixel (planned
+    /// ones, --jitter halton), from a G-buffer; default: forward
+    #[arg(long, value_enum, value_name = "NAME", help_heading = HEADING)]
+    pub shading: Option<ShadingName>,
     /// Samples per pixel of --source trace: of full-rate frames, or of the fovea with --sampling
     #[arg(long, default_value_t = 32, value_parser = parse_samples, value_name = "N", help_heading = HEADING)]
     pub spp: u32,
@@ -65,6 +73,15 @@ pub enum SourceName {
     Raster,
     /// Path tracing with --spp samples per pixel
     Trace,
+}
+
+/// Values of `--shading`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ShadingName {
+    /// As they are drawn
+    Forward,
+    /// From a G-buffer, by a compute pass at the pixels that are shaded
+    Deferred,
 }
 
 /// Settings of renderers that are not options of the input.
@@ -114,10 +131,14 @@ impl InputArgs {
             self.channels.refuse_for(&self.name)?;
         }
         match (source::is_scene(&self.name), self.source, &self.camera) {
+            (true, Some(SourceName::Trace), _) if self.shading.is_some() => {
+                Err(Failure::Input("--shading: it is for rasterised scenes; leave it or --source trace out".into()))
+            }
             (true, Some(SourceName::Trace), _) => self.traced(rendering),
             (true, ..) => self.rasterised(rendering),
             (false, Some(_), _) => refuse("--source"),
             (false, _, Some(_)) => refuse("--camera"),
+            (false, None, None) if self.shading.is_some() => refuse("--shading"),
             (false, None, None) if self.animation.is_some() => refuse("--animation"),
             (false, None, None) => self.read(),
         }
@@ -137,7 +158,17 @@ impl InputArgs {
             Backend::Cpu => Headless::find_roomy(true),
         };
         let device = device.ok_or_else(|| Failure::Input(format!("--source raster: {NO_ADAPTER}")))?;
-        Ok(Box::new(self.scene(rendering.head.clone())?.on(device)?))
+        Ok(Box::new(self.on(&self.scene(rendering.head.clone())?, device)?))
+    }
+
+    /// Uploads a scene to a device that rasterises it.
+    pub fn on(&self, scene: &ViewedScene, device: Arc<Headless>) -> Result<RasterSource, Failure> {
+        let is_deferred = self.shading == Some(ShadingName::Deferred);
+        let source = scene.shaded_on(device, if is_deferred { Shading::Deferred } else { Shading::Forward })?;
+        if is_deferred && !source.is_deferred() {
+            warn(&["--shading deferred: the scene has materials that are drawn forward, and so is all of it".into()]);
+        }
+        Ok(source)
     }
 
     /// Opens a scene for rasterization on any device.

@@ -3,7 +3,7 @@
 use afterimage::Image;
 use afterimage::wgpu::{CommandEncoder, Device};
 use afterimage_lab::device::Headless;
-use afterimage_lab::raster::{Raster, RasterSettings, Targets};
+use afterimage_lab::raster::{Raster, RasterSettings, Shading, Targets};
 use afterimage_lab::scene::Scene;
 use afterimage_lab::view::View;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ pub struct Frame {
 }
 
 /// Without anisotropic filtering, which software devices do one texel at a time.
-pub const FAST: RasterSettings = RasterSettings { anisotropy: 1, shadow_side: 1024 };
+pub const FAST: RasterSettings = RasterSettings { anisotropy: 1, shadow_side: 1024, shading: Shading::Forward };
 
 /// A scene on the device.
 pub struct Rig {

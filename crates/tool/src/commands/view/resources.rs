@@ -46,7 +46,8 @@ impl DeviceResources {
         let geometry = setup.geometry(scale)?;
         let gpu = &device.gpu;
         let foveation = &setup.args.foveation;
-        let renderer = scene.map(|scene| scene.clone().with_geometry(geometry).on(gpu.clone())).transpose()?;
+        let renderer =
+            scene.map(|scene| setup.args.input.on(&scene.clone().with_geometry(geometry), gpu.clone())).transpose()?;
         Ok(Self {
             pipeline: ViewPipeline::new(gpu, geometry, state, foveation.geometry(), setup)?,
             renderer,
