@@ -132,8 +132,8 @@ impl Composer {
         composition.composed
     }
 
-    /// As [`compose`](Self::compose) or [`compose_replacing`](Self::compose_replacing), with the texts that `text` gives
-    /// in place of the built-in ones: for shaders that change while a program runs.
+    /// As [`compose`](Self::compose) or [`compose_replacing`](Self::compose_replacing), with the texts that `text`
+    /// gives in place of the built-in ones: for shaders that change while a program runs.
     ///
     /// # Errors
     /// A line that says which name is unknown, or which modules use each other in a cycle.
