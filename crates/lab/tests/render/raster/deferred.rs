@@ -120,14 +120,14 @@ fn lit_quads_are_those_of_the_deferred_frame() {
         let chosen = Image::from_fn(SIZE, is_chosen);
         let shaded = source.shade(&frame, &ShadingRequest::new(chosen, None)).unwrap().unwrap();
         let ShadedColor::InMemory(color) = shaded.color else { panic!("asked for in memory") };
-        let expected =
-            Image::from_fn(
-                SIZE,
-                |[x, y]| {
-                    if is_chosen([x, y]) { full.color.at(x as usize, y as usize) } else { [0.0; 3] }
-                },
-            );
-        assert!(color == expected, "{name}: {:.1} dB", psnr_db(&color, &expected));
+        // The second picture has the next quads: a planted error.
+        let [expected, planted] = [0, 2].map(|shift| {
+            let lit = |[x, y]: [u32; 2]| {
+                if is_chosen([x + shift, y]) { full.color.at(x as usize, y as usize) } else { [0.0; 3] }
+            };
+            Image::from_fn(SIZE, lit)
+        });
+        assert!(color == expected && color != planted, "{name}: {:.1} dB", psnr_db(&color, &expected));
         assert!(frame.albedo == Some(source.albedo(3, JITTER_PX).unwrap()), "{name}");
     }
 }
