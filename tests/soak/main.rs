@@ -8,6 +8,7 @@ mod events;
 #[allow(dead_code, reason = "the passes' tests use all of it")]
 mod images;
 mod pictures;
+mod planned;
 #[path = "../gpu/pass/rig.rs"]
 #[allow(dead_code, unused_imports, reason = "the passes' tests use all of it")]
 mod rig;

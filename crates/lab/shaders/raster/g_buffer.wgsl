@@ -1,4 +1,5 @@
 //#use octahedral
+//#use pack
 //#use stored_sample
 // Surfaces as the G-buffer has them. With depth (4 bytes) and motion (8 bytes) it takes 32 bytes a pixel:
 //
@@ -31,7 +32,7 @@ fn words_of(normal: vec3f, slopes: vec2f, emitted: vec3f, roughness: f32, materi
     if any(emitted > vec3f(0.0)) {
         light = pack_color(emitted);
     }
-    return vec4u(encode_direction(normal), pack2x16float(slopes), light, low | (material << 16u));
+    return vec4u(encode_direction(normal), half_bits(slopes.x) | (half_bits(slopes.y) << 16u), light, low | (material << 16u));
 }
 
 fn kept_surface(base: vec4f, words: vec4u) -> KeptSurface {
@@ -42,7 +43,7 @@ fn kept_surface(base: vec4f, words: vec4u) -> KeptSurface {
         roughness,
         words.w >> 16u,
         decode_direction(words.x),
-        unpack2x16float(words.y),
+        vec2f(half_value(words.y), half_value(words.y >> 16u)),
         unpack_color(words.z),
     );
 }

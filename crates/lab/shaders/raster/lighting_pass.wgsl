@@ -7,7 +7,7 @@
 // lights need: 9 texels of the shadow map, 4 of the tables of directional albedos a lobe, and one place of the sky. It
 // writes 8 bytes.
 
-@group(1) @binding(0) var depth_map: texture_depth_2d;
+@group(1) @binding(0) var depth_map: texture_2d<f32>;
 @group(1) @binding(1) var base_map: texture_2d<f32>;
 @group(1) @binding(2) var words_map: texture_2d<u32>;
 // A row a material, twin of g_buffer::material_texels.
@@ -64,7 +64,7 @@ fn point_at(px: vec2u, depth: f32) -> LitPoint {
 }
 
 fn lit(px: vec2u) -> vec4f {
-    let depth = textureLoad(depth_map, px, 0);
+    let depth = textureLoad(depth_map, px, 0).x;
     var color: vec3f;
     if depth > 0.0 {
         color = radiance_at(point_at(px, depth));
@@ -104,7 +104,7 @@ fn albedo_all(@builtin(global_invocation_id) id: vec3u) {
     if any(id.xy >= textureDimensions(color_out)) {
         return;
     }
-    let depth = textureLoad(depth_map, id.xy, 0);
+    let depth = textureLoad(depth_map, id.xy, 0).x;
     var albedo = vec3f(0.0);
     if depth > 0.0 {
         albedo = albedo_at(point_at(id.xy, depth));

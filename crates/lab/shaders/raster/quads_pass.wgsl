@@ -20,9 +20,9 @@ fn quad(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u
 fn nothing() {}
 
 // Depth of the opaque surfaces.
-@group(2) @binding(0) var opaque_map: texture_depth_2d;
+@group(2) @binding(0) var opaque_map: texture_2d<f32>;
 
 @fragment
 fn opaque_depth(@builtin(position) position: vec4f) -> @builtin(frag_depth) f32 {
-    return textureLoad(opaque_map, vec2u(position.xy), 0);
+    return textureLoad(opaque_map, vec2u(position.xy), 0).x;
 }

@@ -309,7 +309,7 @@ impl Layouts {
             format: COLOR_FORMAT,
             view_dimension: TextureViewDimension::D2,
         };
-        let kept = [texture(TextureSampleType::Depth), exact, texture(TextureSampleType::Uint), exact, color];
+        let kept = [exact, exact, texture(TextureSampleType::Uint), exact, color];
         let kept: Vec<_> = (0..).zip(kept).map(|(binding, ty)| entry(binding, compute, ty)).collect();
         let textures = (0..SLOTS).flat_map(|i| [Some(filtered), (i < SAMPLERS).then_some(sampler)]).flatten();
         let material = (0..).zip(std::iter::once(storage).chain(textures));
@@ -319,7 +319,7 @@ impl Layouts {
             material: make("material", &material),
             quads: make("quads", &[entry(0, ShaderStages::VERTEX | compute, storage)]),
             g_buffer: make("g-buffer", &kept),
-            opaque_depth: make("opaque depth", &[entry(0, fragment, texture(TextureSampleType::Depth))]),
+            opaque_depth: make("opaque depth", &[entry(0, fragment, exact)]),
             lighting_maps: make(
                 "lighting_maps",
                 &[
