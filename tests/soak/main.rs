@@ -1,7 +1,7 @@
 //! Long streams of frames on both executors in lockstep: whatever the events, nothing leaks or shows NaN.
 //!
-//! The test suite runs a few hundred frames; `tests/soak.sh` runs 100,000 of each method. Alone in its file, for a
-//! process of its own.
+//! The test suite runs a few hundred frames; `tests/soak.sh` runs 100,000 of each method, and a million planned ones.
+//! Alone in its file, for a process of its own.
 
 mod events;
 #[path = "../common/images.rs"]
