@@ -179,6 +179,15 @@ impl<'a, Colors, Scalars, Vectors> FrameInputs<'a, Colors, Scalars, Vectors> {
         }
     }
 
+    /// Inputs of one number a pixel that are known before a frame is shaded, with their names.
+    #[cfg(feature = "cpu")]
+    pub(crate) fn scalars(&self) -> [(&'static str, Option<Scalars>); 4]
+    where
+        Scalars: Copy,
+    {
+        [("depth", self.depth), ("trust", self.trust), ("reactive", self.reactive), ("lod", self.lod)]
+    }
+
     /// Checks all fields except the images.
     pub(crate) fn check(&self, desc: &ContextDesc) -> Result<(), FrameError> {
         self.check_facts(desc)?;

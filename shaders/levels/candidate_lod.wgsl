@@ -1,5 +1,5 @@
 //#use foveation_lod
-//#use surface
+//#use lod
 // Level of detail of a candidate: the frame's input, or by eccentricity. CPU twin: Inputs::candidate_lod in
 // src/cpu/inputs.rs.
 

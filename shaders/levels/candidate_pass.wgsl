@@ -1,4 +1,5 @@
 //#use inputs
+//#use mip_noise
 //#use surface
 // First level of the mip chain of noisy candidates: means of 2x2 pixels without non-finite ones; at odd borders a
 // missing pixel is replaced by its neighbour. CPU twin: MipChain::build_candidates in src/cpu/levels/mip_chain.rs.

@@ -1,5 +1,5 @@
 //#use smr
-//#use noise
+//#use mip_noise
 //#use surface
 // Next level of a mip chain of surfaces or noisy candidates: means of 2x2 texels; at odd borders a missing texel is
 // replaced by its neighbour. CPU twin: MipChain::fill in src/cpu/levels/mip_chain.rs. One invocation a texel of the

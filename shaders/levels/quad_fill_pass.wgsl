@@ -1,3 +1,4 @@
+//#use candidate
 //#use inputs
 //#use quad_samples
 // Colors between shaded quads, for methods that read whole frames: shaded pixels stay unchanged, and others are means
@@ -24,7 +25,7 @@ fn pixel(px: vec2u, view: u32) -> vec4f {
         if sample.is_there && sampled.usable {
             let x = f32(at.x) - f32(px.x);
             let y = f32(at.y) - f32(px.y);
-            let w = 1.0 / max(x * x + y * y, 1.0);
+            let w = distance_weight(x * x + y * y);
             let alpha = usable_alpha(given.w);
             sum += vec4f(sampled.color, alpha) * w;
             weight += w;

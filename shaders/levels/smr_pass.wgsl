@@ -1,4 +1,5 @@
 //#use candidate_lod
+//#use mip_noise
 //#use smr
 //#use output
 //#use surface_history

@@ -1,10 +1,12 @@
 //#use candidate_lod
 //#use inputs
 //#use output
+//#use mip_noise
 //#use pack
 //#use past_frame
 //#use resample
 //#use rng
+//#use stored_reservoir
 //#use wrs
 //#use acuity
 // Weighted reservoirs in one pass: sanitize, reproject, reject, expose, gate, bias, combine, store and output. CPU

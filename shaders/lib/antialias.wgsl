@@ -9,7 +9,6 @@ const MOST_PAST_MOVED: f32 = 3.0;
 const MOVED_PER_PX: f32 = 4.0;
 const MOST_PAST_EDGE: f32 = 5.0;
 const BESIDE_WEIGHT: f32 = 0.35;
-const BESIDE_PX2: f32 = 2.0;
 const CODES_PER_LOD: f32 = 7.0;
 const CODES_PER_RUN: f32 = 48.0;
 const DEVIATIONS: f32 = 6.0;
@@ -193,6 +192,12 @@ fn clipped(c: vec3f, change: vec3f) -> vec3f {
     }
     let v = max(roots(c) + change, vec3f(0.0));
     return v * v;
+}
+
+// Adds the squared difference of a sample and history, times its weight, to a sum for `scattered_error`.
+fn add_scatter(scatter: f32, o: Observation, weight: f32) -> f32 {
+    let difference = min(root_difference(o.sampled, o.history), 1e6);
+    return scatter + (difference * difference) * weight;
 }
 
 // Expected difference of one sample from history around it: the larger of the model's value and the standard deviation

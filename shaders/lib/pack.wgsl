@@ -1,16 +1,5 @@
 //#use sanitize
-// Twin of src/kernel/pack.rs: storage of a reservoir in three words, whose layout is documented there.
-
-const MAX_W_SUM: f32 = 0x1p100;
-const MAX_AGE: u32 = 255u;
-const EMPTY_WORDS: vec3u = vec3u(0x7c00u, 0xffff0000u, 0u);
-
-struct Stored {
-    color: vec3f,
-    disparity: f32,
-    w_sum: f32,
-    age: u32,
-}
+// Twin of src/kernel/pack.rs: codes of numbers in stored words.
 
 // Bits of the half nearest to `x` (ties to even), clamped to +-65504.
 fn half_bits(x: f32) -> u32 {
@@ -53,37 +42,32 @@ fn disparity_value(code: u32) -> f32 {
     return bitcast<f32>((code + (95u << 10u)) << 13u);
 }
 
-// Packs a reservoir.
-fn pack(s: Stored) -> vec3u {
-    let w = bitcast<u32>(select(0.0, min(s.w_sum, MAX_W_SUM), s.w_sum > 0.0));
-    let w_upper = w + 0x7fu + ((w >> 8u) & 1u);
-    return vec3u(
-        half_bits(s.color.x) | (half_bits(s.color.y) << 16u),
-        half_bits(s.color.z) | (disparity_code(s.disparity) << 16u),
-        (w_upper & 0xffffff00u) | min(s.age, MAX_AGE),
-    );
+const TAP_RELATIVE: f32 = 0.1;
+const LARGEST_DISPARITY: f32 = 1e30;
+
+// The first of the `disparity_code`s from `low` to `high` times the disparity `expected`, and their number: 0 if the
+// expected disparity is negative.
+fn codes_between(expected: f32, low: f32, high: f32) -> vec2u {
+    // The limit keeps compilers from merging these factors with those of the disparity.
+    let limited = min(expected, LARGEST_DISPARITY);
+    let first = disparity_code(limited * low);
+    let last = disparity_code(limited * high);
+    return vec2u(first, select(last - first + 1u, 0u, expected < 0.0));
 }
 
-struct StoredColor {
-    color: vec3f,
-    disparity: f32,
-    valid: bool,
+// `codes_between` of the surface that has the disparity `expected`, within `TAP_RELATIVE`.
+fn tap_codes(expected: f32) -> vec2u {
+    return codes_between(expected, 1.0f - TAP_RELATIVE, 1.0f / (1.0f - TAP_RELATIVE));
 }
 
-// Color and disparity from the first two words of a reservoir, and whether the color is valid.
-fn unpack_sample(words: vec2u) -> StoredColor {
-    let stored_color = vec3f(half_value(words.x), half_value(words.x >> 16u), half_value(words.y));
-    // Infinity and NaN decode to numbers above the largest half.
-    let largest = max(max(abs(stored_color.x), abs(stored_color.y)), abs(stored_color.z));
-    return StoredColor(stored_color, disparity_value(words.y >> 16u), largest <= MAX_HALF);
+// `tap_codes` for surfaces that have the disparities from `farthest` to `nearest`, both of them at least 0.
+fn tap_codes_between(farthest: f32, nearest: f32) -> vec2u {
+    let first = tap_codes(farthest);
+    let last = tap_codes(nearest);
+    return vec2u(first.x, max(last.x, first.x) - first.x + last.y);
 }
 
-// Unpacks a reservoir.
-fn unpack(words: vec3u) -> Stored {
-    let stored = unpack_sample(words.xy);
-    let w_sum = weight(bitcast<f32>(words.z & 0xffffff00u));
-    if !stored.valid || w_sum > MAX_W_SUM {
-        return Stored(vec3f(0.0), -1.0, 0.0, 0u);
-    }
-    return Stored(stored.color, stored.disparity, w_sum, words.z & 0xffu);
+// Whether the disparity in the high half of `word` is one of `codes_between`.
+fn has_code(word: u32, codes: vec2u) -> bool {
+    return (word >> 16u) - codes.x < codes.y;
 }

@@ -1,10 +1,8 @@
 //#use surface
 // Twin of src/kernel/resample.rs.
 
-const TAP_RELATIVE: f32 = 0.1;
 const STAND_IN_WEIGHT: f32 = 0.1;
 const ROUNDS: u32 = 3u;
-const LARGEST_DISPARITY: f32 = 1e30;
 
 // Number of the texel (as for `corner_weight`) that has the second largest bilinear weight at the fractions of a
 // position.
@@ -85,33 +83,6 @@ fn taps_of(around: TapsAround, index: u32) -> FourTaps {
 // Sum of the taps' Catmull-Rom weights: 1 without those of the corners.
 fn sharp_sum(around: TapsAround) -> f32 {
     return 1.0 - (around.sharp_x.x + around.sharp_x.w) * (around.sharp_y.x + around.sharp_y.w);
-}
-
-// The first of the `disparity_code`s from `low` to `high` times the disparity `expected`, and their number: 0 if the
-// expected disparity is negative.
-fn codes_between(expected: f32, low: f32, high: f32) -> vec2u {
-    // The limit keeps compilers from merging these factors with those of the disparity.
-    let limited = min(expected, LARGEST_DISPARITY);
-    let first = disparity_code(limited * low);
-    let last = disparity_code(limited * high);
-    return vec2u(first, select(last - first + 1u, 0u, expected < 0.0));
-}
-
-// `codes_between` of the surface that has the disparity `expected`, within `TAP_RELATIVE`.
-fn tap_codes(expected: f32) -> vec2u {
-    return codes_between(expected, 1.0f - TAP_RELATIVE, 1.0f / (1.0f - TAP_RELATIVE));
-}
-
-// `tap_codes` for surfaces that have the disparities from `farthest` to `nearest`, both of them at least 0.
-fn tap_codes_between(farthest: f32, nearest: f32) -> vec2u {
-    let first = tap_codes(farthest);
-    let last = tap_codes(nearest);
-    return vec2u(first.x, max(last.x, first.x) - first.x + last.y);
-}
-
-// Whether the disparity in the high half of `word` is one of `codes_between`.
-fn has_code(word: u32, codes: vec2u) -> bool {
-    return (word >> 16u) - codes.x < codes.y;
 }
 
 struct Tap {

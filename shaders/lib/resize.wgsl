@@ -1,4 +1,4 @@
-//#use surface
+//#use lod
 // Twin of src/kernel/resize.rs.
 
 // Position, in a row or column of `old_len` pixels, of pixel `x` of a row or column of the new length.

@@ -1,14 +1,12 @@
 //#use color
 //#use depth
+//#use lod
 //#use stored_sample
 //#use noise
 //#use approx
 // Twin of src/kernel/sparse_smr.rs, which documents the functions.
 
 const LIGHT_RELATIVE: f32 = 0.1;
-const SAMPLE_RELATIVE: f32 = 0.05;
-const OTHER_SURFACE: f32 = 1e-3;
-const BY_NEIGHBOURS: f32 = 1e-3;
 const STILL_ERROR: f32 = 0.3;
 const MOVED_ERROR: f32 = 0.6;
 const CONTRAST_ERROR: f32 = 0.375;
@@ -33,12 +31,6 @@ const AGREED: vec2f = vec2f(0.6, 6.0);
 const AGAINST: vec2f = vec2f(0.5, 0.25);
 const RELIT_ERRORS: f32 = 0.8;
 
-// Level of detail of a candidate at distance `px` from the nearest sample of a pattern of level `coarsest`: 0 at the
-// sample's own pixel.
-fn candidate_level(px: f32, coarsest: f32) -> f32 {
-    return min(ln_approx(1.0 + 2.0 * px) * LOG2_E, coarsest);
-}
-
 // `error` is negative without history or without a usable sample.
 struct Observation {
     sampled: vec3f,
@@ -46,6 +38,28 @@ struct Observation {
     error: f32,
     confidence: f32,
     deviation: f32,
+}
+
+// No comparison.
+fn no_observation() -> Observation {
+    return Observation(vec3f(0.0), vec3f(0.0), -1.0, 0.0, 0.0);
+}
+
+// Observation in two words: history's color; expected error as a half, confidence and deviation.
+fn pack_observation(o: Observation) -> vec2u {
+    return vec2u(pack_color(o.history), half_bits(o.error) | (pack_known(o.confidence, o.deviation) << 16u));
+}
+
+// Inverse of `pack_observation`, with the sample's color.
+fn unpack_observation(words: vec2u, sampled: vec3f) -> Observation {
+    let known = words.y >> 16u;
+    let error = half_value(words.y);
+    return Observation(sampled, unpack_color(words.x), error, known_confidence(known), known_deviation(known));
+}
+
+// Whether packed words are a comparison.
+fn is_observed(words: vec2u) -> bool {
+    return half_value(words.y) >= 0.0;
 }
 
 // Confidence and deviation of an observation, in sixteen bits.
@@ -123,6 +137,34 @@ fn add_observation(a: ObservedAround, o: Observation, weight: f32, spatial: f32)
     );
 }
 
+// Sums over no observation.
+fn none_around() -> ObservedAround {
+    return ObservedAround(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+}
+
+// Mean of the observations at the pixels of a quad, from their sums with weights of 1, and from the sum of their
+// confidences; none without any.
+fn mean_observation(a: ObservedAround, confidence: f32) -> Observation {
+    let inverse = 1.0 / max(a.weight, 1.0);
+    let error = select(a.error * inverse, -1.0, a.weight == 0.0);
+    return Observation(a.sampled * inverse, a.history * inverse, error, confidence * inverse, a.deviation * inverse);
+}
+
+// Weight by position of a quad around another one. `distance2` and `least`: squared distances in quads, its own and the
+// smallest of those around.
+fn spatial_weight(distance2: f32, least: f32) -> f32 {
+    return 1.0 / (1.0 + distance2 / least);
+}
+
+// Weight of an observation around a quad with the observation `own`, from its weight by position.
+fn neighbour_weight(own: Observation, other: Observation, spatial: f32) -> f32 {
+    var weight = spatial * other.confidence;
+    if own.error >= 0.0 {
+        weight = agreement(own, other, spatial);
+    }
+    return weight;
+}
+
 // Expected difference of one sample from history around it.
 fn mean_error(a: ObservedAround) -> f32 {
     return a.error * (1.0 / a.weight);
@@ -166,6 +208,11 @@ fn fit(errors: f32, confidence: f32) -> f32 {
     return 1.0 - confidence * smooth_step(FIT_ERRORS.x, FIT_ERRORS.y, errors);
 }
 
+// Whether a gain is used: whether it leaves less than the errors `without` it. Both are sums of `errors_left`.
+fn gain_helps(left: f32, without: f32) -> bool {
+    return left <= without * RELIT_ERRORS;
+}
+
 // Degree to which history after a gain fits at a sample's own pixel, in [0, 1].
 fn own_fit(own: Observation, gains: vec3f) -> f32 {
     return fit(errors_left(own, gains), own.confidence);
@@ -196,6 +243,12 @@ fn mean_fit(a: ObservedAround, confidence: f32) -> f32 {
     let inverse = 1.0 / a.weight;
     let start = ((a.error * inverse) * (sqrt(a.squared) * inverse)) * MEAN_ERRORS;
     return 1.0 - confidence * smooth_step(start, start, root_difference(a.sampled * inverse, a.history * inverse));
+}
+
+// As `fit_around`, for noisy samples.
+fn noisy_fit_around(a: ObservedAround, left: f32) -> f32 {
+    let confidence = min(a.weight / a.spatial, 1.0);
+    return min(fit(left / a.weight, confidence), mean_fit(a, confidence));
 }
 
 struct Lit {

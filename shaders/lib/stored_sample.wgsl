@@ -1,4 +1,5 @@
-//#use surface
+//#use lod
+//#use pack
 // Twin of src/kernel/stored_sample.rs, which documents the layout.
 
 const MAX_COLOR: f32 = 65408.0;
@@ -240,4 +241,10 @@ fn interpolate(a: AroundStored) -> Interpolated {
     let inverse = 1.0 / a.weight;
     let color = max((a.color - rise / det) * inverse, vec3f(0.0));
     return Interpolated(color, a.lod * inverse, a.lowest, a.highest, nearest);
+}
+
+// Whether history has moved since its samples were shaded, by more than the resolution of their stored places. `motion`
+// and `place_px`: in pixels.
+fn has_moved(motion: vec2f, place_px: vec2f) -> bool {
+    return max(abs(motion.x), abs(motion.y)) > EXACT_PX || max(abs(place_px.x), abs(place_px.y)) > EXACT_PX;
 }

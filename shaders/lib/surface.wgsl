@@ -1,12 +1,9 @@
+//#use lod
 //#use pack
 // Twin of src/kernel/surface.rs, which documents the layout.
 
-const EMPTY_LOD: u32 = 0u;
 const EMPTY_SURFACE: vec2u = vec2u(0u, 0xffff0000u);
 const MAX_FLOAT14: f32 = 65472.0;
-const LOD_STEPS: f32 = 7.0;
-const MAX_LOD: f32 = 62.0 * (1.0 / LOD_STEPS);
-const COARSER_WIDTH: f32 = 0.25;
 
 // A negative `lod` marks an empty texel.
 struct Surface {
@@ -46,11 +43,6 @@ fn pack_surface(s: Surface) -> vec2u {
 // Code of the level of detail; `EMPTY_LOD` for an empty texel.
 fn lod_code(words: vec2u) -> u32 {
     return (words.x >> 28u) | ((words.y >> 10u) & 0x30u);
-}
-
-// Level of detail of a code.
-fn lod_value(code: u32) -> f32 {
-    return f32(code - 1u) * (1.0f / LOD_STEPS);
 }
 
 // Color of a sample.

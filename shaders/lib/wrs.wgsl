@@ -1,5 +1,6 @@
 //#use approx
 //#use color
+//#use lab
 //#use reservoir
 //#use sanitize
 // Twin of src/kernel/wrs.rs: gate, bias, combine; references of the gate.

@@ -16,15 +16,7 @@ override ANTIALIAS: u32 = 0u;
 
 fn observation_at(px: vec2u, view: u32) -> Observation {
     let words = textureLoad(observed, px, view, 0).xy;
-    let sampled = color(sample_at(px, view).xyz).color;
-    let known = words.y >> 16u;
-    return Observation(
-        sampled,
-        unpack_color(words.x),
-        half_value(words.y),
-        known_confidence(known),
-        known_deviation(known),
-    );
+    return unpack_observation(words, color(sample_at(px, view).xyz).color);
 }
 
 fn is_alike(own_disparity: f32, px: vec2u, view: u32) -> bool {
@@ -33,7 +25,7 @@ fn is_alike(own_disparity: f32, px: vec2u, view: u32) -> bool {
 
 // Whether a pixel of a quad is in the frame and was compared with history.
 fn is_compared(px: vec2u, view: u32) -> bool {
-    return all(px < frame.size) && half_value(textureLoad(observed, min(px, frame.size - 1u), view, 0).y) >= 0.0;
+    return all(px < frame.size) && is_observed(textureLoad(observed, min(px, frame.size - 1u), view, 0).xy);
 }
 
 // The quad's own comparison: a mean of those of one surface, that of its first compared pixel. Its error is negative
@@ -49,7 +41,7 @@ fn own_of(quad: vec2u, view: u32) -> Own {
         first = select(first, left - 1u, is_compared(px_of_quad(quad, left - 1u), view));
     }
     let disparity_now = disparity_at(px_of_quad(quad, first & 3u), view);
-    var sum = ObservedAround(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    var sum = none_around();
     var confidence = 0.0;
     let taps = select(4u, 0u, first == 4u);
     for (var i = 0u; i < taps; i++) {
@@ -60,11 +52,7 @@ fn own_of(quad: vec2u, view: u32) -> Own {
             confidence += o.confidence;
         }
     }
-    let inverse = 1.0 / max(sum.weight, 1.0);
-    let error = select(sum.error * inverse, -1.0, sum.weight == 0.0);
-    let deviation = sum.deviation * inverse;
-    let own = Observation(sum.sampled * inverse, sum.history * inverse, error, confidence * inverse, deviation);
-    return Own(own, disparity_now);
+    return Own(mean_observation(sum, confidence), disparity_now);
 }
 
 struct Neighbour {
@@ -79,17 +67,14 @@ fn neighbour_at(tap: u32, quad: vec2u, view: u32, own: Own, around: vec2u, least
     let code = select(code_of(around, tap >> 2u), NOWHERE, tap >= 32u);
     let offset = neighbour_offset(code);
     let px = px_of_quad(vec2u(vec2i(quad) + offset), tap & 3u);
-    var near = Neighbour(Observation(vec3f(0.0), vec3f(0.0), -1.0, 0.0, 0.0), 0.0, 0.0);
+    var near = Neighbour(no_observation(), 0.0, 0.0);
     let is_there = code != NOWHERE || tap >= 32u;
     if !is_there || !is_compared(px, view) || !is_alike(own.disparity, px, view) {
         return near;
     }
     near.observation = observation_at(px, view);
-    near.spatial = 1.0 / (1.0 + f32(offset.x * offset.x + offset.y * offset.y) / least);
-    near.weight = near.spatial * near.observation.confidence;
-    if own.observation.error >= 0.0 {
-        near.weight = agreement(own.observation, near.observation, near.spatial);
-    }
+    near.spatial = spatial_weight(f32(offset.x * offset.x + offset.y * offset.y), least);
+    near.weight = neighbour_weight(own.observation, near.observation, near.spatial);
     return near;
 }
 
@@ -102,7 +87,7 @@ fn light(quad: vec2u, view: u32) -> vec4u {
         let offset = neighbour_offset(code);
         least = select(least, min(least, f32(offset.x * offset.x + offset.y * offset.y)), code != NOWHERE);
     }
-    var sum = ObservedAround(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    var sum = none_around();
     var without = 0.0;
     var votes = vec2f(0.0);
     var scatter = 0.0;
@@ -119,8 +104,7 @@ fn light(quad: vec2u, view: u32) -> vec4u {
                 votes += vote(near.observation, errors, near.spatial);
             }
             if ANTIALIAS != 0u {
-                let difference = min(root_difference(near.observation.sampled, near.observation.history), 1e6);
-                scatter += (difference * difference) * near.weight;
+                scatter = add_scatter(scatter, near.observation, near.weight);
             }
         }
     }
@@ -141,7 +125,7 @@ fn light(quad: vec2u, view: u32) -> vec4u {
                 with_gain += errors_left(near.observation, lit.gains) * near.weight;
             }
         }
-        if !is_relit || with_gain > without * RELIT_ERRORS {
+        if !is_relit || !gain_helps(with_gain, without) {
             lit.gains = vec3f(1.0);
             with_gain = without;
         }
@@ -151,8 +135,7 @@ fn light(quad: vec2u, view: u32) -> vec4u {
         }
         lit.fit = fit_around(sum, with_gain, fit_by_votes(sum, votes, fit_of_quad));
         if NOISY != 0u {
-            let confidence = min(sum.weight / sum.spatial, 1.0);
-            lit.fit = min(fit(with_gain / sum.weight, confidence), mean_fit(sum, confidence));
+            lit.fit = noisy_fit_around(sum, with_gain);
         }
     }
     for (var i = 0u; i < 4u; i++) {

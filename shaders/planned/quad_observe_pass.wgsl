@@ -11,7 +11,7 @@
 @group(0) @binding(23) var observed_out: texture_storage_2d_array<rg32uint, write>;
 
 fn observe(px: vec2u, view: u32) -> vec2u {
-    let nothing = vec2u(0u, half_bits(-1.0));
+    let nothing = pack_observation(no_observation());
     let mask_word = mask_at(px, view);
     let level = level_of(mask_word);
     if level == 0u || !is_shaded(mask_word, px) {
@@ -40,8 +40,7 @@ fn observe(px: vec2u, view: u32) -> vec2u {
         error += expected_noise(past, noise_at(px, view), luma(history.color));
         confidence = noisy_lod_confidence(history.lod, past, luma(history.color));
     }
-    let known = pack_known(confidence, compared.deviation);
-    return vec2u(pack_color(history.color), half_bits(error) | (known << 16u));
+    return pack_observation(Observation(vec3f(0.0), history.color, error, confidence, compared.deviation));
 }
 
 @compute @workgroup_size(64, 1)

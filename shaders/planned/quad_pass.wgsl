@@ -1,3 +1,4 @@
+//#use candidate
 //#use each_pixel
 //#use quad_samples
 //#use sparse_pixel
@@ -6,14 +7,9 @@
 
 @group(0) @binding(21) var lights: texture_2d_array<u32>;
 
-// Squared distance in pixels that stands for a missing sample.
-const NO_PX2: f32 = 1e30;
-
 // Mean of the samples around a noisy pixel with a sample, its own included, and the mean variance of one.
 fn mean_around(around: AroundPixel, px: vec2u, view: u32, codes: vec2u) -> vec4f {
-    var sum = vec3f(0.0);
-    var variance = 0.0;
-    var weights = 0.0;
+    var sums = NoisySums(vec4f(0.0), 0.0);
     // A variable count on purpose, as below.
     let taps = select(0u, 12u, around.count > 0u);
     for (var tap = 0u; tap < taps; tap++) {
@@ -26,30 +22,19 @@ fn mean_around(around: AroundPixel, px: vec2u, view: u32, codes: vec2u) -> vec4f
         if sample.is_there && sampled.usable && (same || all(at == px)) {
             let x = f32(at.x) - f32(px.x);
             let y = f32(at.y) - f32(px.y);
-            let noise = noise_at(at, view);
-            let share = noisy_share(noise.samples, x * x + y * y);
-            sum += sampled.color * share;
-            variance += noise.variance * share;
-            weights += share;
+            sums = add_noisy(sums, sampled.color, noise_at(at, view), x * x + y * y);
         }
     }
-    let inverse = 1.0 / weights;
-    return vec4f(sum * inverse, variance * inverse);
+    return noisy_mean(sums);
 }
 
 // Candidate from the samples that stand for a pixel.
 fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Candidate {
     let around = around_pixel(px, view, mask_word);
     let coarsest = f32(level_of(mask_word));
-    let codes = codes_between(disparity_now, 1.0f - SAMPLE_RELATIVE, 1.0f / (1.0f - SAMPLE_RELATIVE));
-    var candidate = no_candidate();
-    candidate.lowest = vec3f(MAX_HALF);
-    var sum = vec4f(0.0);
-    var weights = 0.0;
-    var gain_sum = vec3f(0.0);
-    var fit_sum = 0.0;
-    var valid_sum = 0.0;
-    var nearest_px2 = NO_PX2;
+    let codes = sample_codes(disparity_now);
+    var sums = no_samples();
+    var is_own = false;
     var own = vec4f(0.0);
     var own_fits = 1.0;
     var noises = NoiseSum(0.0, 0.0, 0.0);
@@ -66,52 +51,43 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
             let place = (at.x & 1u) | ((at.y & 1u) << 1u);
             let lit = quad_lit(words, place);
             let same = DEPTH_TEST == 0u || has_code(quad_code(words, place), codes);
-            let is_own = all(at == px);
             let x = f32(at.x) - f32(px.x);
             let y = f32(at.y) - f32(px.y);
             let px2 = x * x + y * y;
-            let weight = select(1.0 / max(px2, 1.0), 1.0, is_own) * select(OTHER_SURFACE, 1.0, same);
-            let known = weight * select(BY_NEIGHBOURS, 1.0, lit.is_own);
+            let weight = sample_weight(px2, same);
             let alpha = usable_alpha(given.w);
-            sum += vec4f(sampled.color, alpha) * weight;
-            weights += weight;
-            gain_sum += lit.gains * known;
-            fit_sum += lit.fit * known;
-            valid_sum += known;
-            candidate.lowest = min(candidate.lowest, sampled.color);
-            candidate.highest = max(candidate.highest, sampled.color);
-            let is_nearer = same && px2 < nearest_px2;
-            nearest_px2 = select(nearest_px2, px2, is_nearer);
-            candidate.beside = select(candidate.beside, sampled.color, is_nearer);
+            sums = add_sample(sums, sampled.color, alpha, lit, weight, px2, same);
             if HAS_ALBEDO {
                 albedos = with_sample(albedos, at, view, sampled.color, weight);
             }
             if NOISY != 0u {
                 noises = add_noise(noises, noise_at(at, view), weight);
             }
-            if is_own {
-                candidate.is_own = true;
+            if all(at == px) {
+                is_own = true;
                 own = vec4f(sampled.color, alpha);
                 own_fits = lit.own_fit;
             }
         }
     }
-    if weights == 0.0 {
-        return no_candidate();
+    var candidate = no_candidate();
+    if sums.weight == 0.0 {
+        return candidate;
     }
-    let mean = sum * (1.0 / weights);
-    let known = 1.0 / valid_sum;
-    let lod = select(candidate_level(sqrt(nearest_px2), coarsest), coarsest + 1.0, nearest_px2 == NO_PX2);
-    candidate.color = select(mean.xyz, own.xyz, candidate.is_own);
-    candidate.alpha = select(mean.w, own.w, candidate.is_own);
+    let mean = sample_mean(sums, coarsest);
     candidate.usable = true;
-    candidate.is_beside = nearest_px2 <= BESIDE_PX2;
-    candidate.lod = select(lod, 0.0, candidate.is_own);
-    candidate.gains = gain_sum * known;
-    candidate.fit = min(fit_sum * known, own_fits);
+    candidate.is_own = is_own;
+    candidate.color = select(mean.color, own.xyz, is_own);
+    candidate.alpha = select(mean.alpha, own.w, is_own);
+    candidate.lod = select(mean.lod, 0.0, is_own);
+    candidate.gains = mean.gains;
+    candidate.fit = min(mean.fit, own_fits);
+    candidate.lowest = sums.lowest;
+    candidate.highest = sums.highest;
+    candidate.beside = sums.beside;
+    candidate.is_beside = is_beside(sums);
     if HAS_ALBEDO {
-        let has_surface = nearest_px2 != NO_PX2;
-        albedos = with_change(albedos, candidate.is_own, has_surface);
+        albedos = with_change(albedos, is_own, has_surface(sums));
         candidate.color *= albedos.factor;
         candidate.lowest *= albedos.factor;
         candidate.highest *= albedos.factor;
@@ -120,7 +96,7 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
     }
     if NOISY != 0u {
         candidate.noise = mean_noise(noises);
-        if candidate.is_own {
+        if is_own {
             candidate.noise = noise_at(px, view);
             candidate.around = mean_around(around, px, view, codes);
         }

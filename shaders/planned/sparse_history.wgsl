@@ -1,7 +1,7 @@
 //#use antialias
 //#use no_albedo
 //#use previous
-//#use resample
+//#use pack
 //#use sparse_smr
 //#use color
 // Stored samples around the previous position of a pixel's surface. CPU twin: src/cpu/planned/sparse_history.rs.
@@ -221,11 +221,6 @@ fn sparse_history(source: SparseSource, view: u32, needed: bool, no_texels: Past
         alpha = vec2f(clamp(shown.color.x, shown.lowest.x, shown.highest.x), shown.nearest.color.x);
     }
     return SparseHistory(found, nearest_texel, mean_of(kept_lod), alpha, albedos);
-}
-
-// Whether history has moved since its samples were shaded, by more than the resolution of their stored places.
-fn has_moved(motion: vec2f, place_px: vec2f) -> bool {
-    return max(abs(motion.x), abs(motion.y)) > EXACT_PX || max(abs(place_px.x), abs(place_px.y)) > EXACT_PX;
 }
 
 // Expected difference of a sample from history with the local contrast `contrast`, and deviation of a still mean.

@@ -1,3 +1,4 @@
+//#use candidate
 //#use sparse_history
 //#use sparse_noise
 //#use output
@@ -39,16 +40,6 @@ fn no_candidate() -> Candidate {
     none.alpha = 1.0;
     none.noise = Noise(1.0, 0.0);
     return none;
-}
-
-// The noisy sample of a pixel whose history is a mean of `past` samples, with its share of the mean around it. Its
-// variance takes its share, too: a pixel whose samples all missed a lamp would call its neighbours' light a change.
-fn borrowing(own: Candidate, past: f32) -> Candidate {
-    var all_around = own;
-    let share = borrowed(past, Noise(own.noise.samples, own.around.w), luma(own.around.xyz));
-    all_around.color = own.color + (own.around.xyz - own.color) * share;
-    all_around.noise.variance = own.noise.variance + (own.around.w - own.noise.variance) * share;
-    return all_around;
 }
 
 // Whether the samples around a pixel tell the color at its centre: in the fovea of jittered frames.
@@ -143,7 +134,9 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candi
         if history.lod >= 0.0 {
             past = stored_noise(found.texel, view).samples;
         }
-        candidate = borrowing(candidate, past);
+        let with_borrowed = borrow_around(candidate.color, candidate.noise, candidate.around, past);
+        candidate.color = with_borrowed.color;
+        candidate.noise = with_borrowed.noise;
     }
 
     var shown = candidate.color;

@@ -46,7 +46,6 @@ pub(super) fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), 
     let half = desc.size_px.map(|side| side.div_ceil(2));
     check_sizes_of(desc, "half", frame.half.map(|h| h.iter().map(|i| i.size())), half)?;
     check_geometry(desc, frame)?;
-    check_sizes(desc, "lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
     check_sizes(desc, "albedo", frame.albedo.map(|a| a.iter().map(|i| i.size())))?;
     check_sizes(desc, "mask", frame.mask.map(|m| m.iter().map(|i| i.size())))?;
     check_sizes(desc, "noise", frame.noise.map(|n| n.iter().map(|i| i.size())))
@@ -54,10 +53,10 @@ pub(super) fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), 
 
 /// Checks the sizes of the inputs that are known before a frame is shaded.
 pub(super) fn check_geometry(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
-    check_sizes(desc, "depth", frame.depth.map(|d| d.iter().map(|i| i.size())))?;
-    check_sizes(desc, "motion", frame.motion.map(|m| m.iter().map(|i| i.size())))?;
-    check_sizes(desc, "trust", frame.trust.map(|t| t.iter().map(|i| i.size())))?;
-    check_sizes(desc, "reactive", frame.reactive.map(|r| r.iter().map(|i| i.size())))
+    for (name, images) in frame.scalars() {
+        check_sizes(desc, name, images.map(|images| images.iter().map(|i| i.size())))?;
+    }
+    check_sizes(desc, "motion", frame.motion.map(|m| m.iter().map(|i| i.size())))
 }
 
 /// Checks that an input, if given, has one image of the context's size for each view.

@@ -237,8 +237,8 @@ impl History {
         }
     }
 
-    /// Packed reservoirs of the last processed frame, view after view ([`pack`](crate::kernel::pack)); empty except for
-    /// wrs.
+    /// Packed reservoirs of the last processed frame, view after view
+    /// ([`stored_reservoir`](crate::kernel::stored_reservoir)); empty except for wrs.
     pub fn words(&self) -> &[[u32; 3]] {
         &self.previous.reservoirs
     }

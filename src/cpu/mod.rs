@@ -93,8 +93,8 @@ impl CpuAfterimage {
         &self.history
     }
 
-    /// Overwrites history with packed reservoirs ([`pack`](crate::kernel::pack)), for tests that start from a known
-    /// state.
+    /// Overwrites history with packed reservoirs ([`stored_reservoir`](crate::kernel::stored_reservoir)), for tests
+    /// that start from a known state.
     ///
     /// # Panics
     /// If `words` and the history differ in length.
@@ -263,7 +263,6 @@ impl CpuAfterimage {
     pub fn plan(&mut self, frame: &Frame<'_>) -> Result<&[Image<bool>], FrameError> {
         frame.check_plan(&self.desc)?;
         check_geometry(&self.desc, frame)?;
-        check_sizes(&self.desc, "lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
         Ok(&self.planned.insert(Planned::new(&self.desc, &self.history, frame)).masks)
     }
 

@@ -3,6 +3,7 @@
 use crate::foveation::Foveation;
 use crate::frame::Exposure;
 use crate::image::Image;
+use crate::kernel::candidate::distance_weight;
 use crate::kernel::quads::{
     NOWHERE, REACH, RUN_QUADS, WHOLE, first_of, last_of, nearest_px, neighbour_offset, octant_offsets, place_in_quad,
     quadrant_of, sample_code, sample_offset, window,
@@ -178,7 +179,7 @@ impl Quads {
             let given = Vec3::from(given_at([x, y]));
             let (color, usable) = sanitize::color(given * exposure.of_colors());
             if usable {
-                let w = 1.0 / (offset_px2(x, px[0]) + offset_px2(y, px[1]));
+                let w = distance_weight(offset_px2(x, px[0]) + offset_px2(y, px[1]));
                 sum += color * w;
                 weight += w;
             }

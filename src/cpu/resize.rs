@@ -2,7 +2,8 @@
 //! `shaders/planned/resize_sparse_pass.wgsl`.
 
 use crate::kernel::antialias::{Mean, mean_of, stored_lod};
-use crate::kernel::resample::{gather_around, resolve, sharp_sum, surface_tap, tap_codes, taps_around};
+use crate::kernel::pack::tap_codes;
+use crate::kernel::resample::{gather_around, resolve, sharp_sum, surface_tap, taps_around};
 use crate::kernel::resize::{old_position, resized_lod};
 use crate::kernel::sanitize::MAX_HALF;
 use crate::kernel::stored_sample::{StoredSample, moved_stored, resized_stored, unpack_stored};

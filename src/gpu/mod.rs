@@ -128,10 +128,10 @@ impl Afterimage {
     ///
     /// For smr on planned frames the packed samples ([`stored_sample`](crate::kernel::stored_sample), `Rg32Uint`).
     ///
-    /// For wrs the packed reservoirs ([`pack`](crate::kernel::pack)): words 0 and 1 (`Rg32Uint`), word 2 (`R32Uint`),
-    /// and with A-ES the keys, or the gate's references (`R32Uint`). For taa and smr the packed surfaces
-    /// ([`surface`](crate::kernel::surface), `Rg32Uint`); for smr also their mip chain (`Rgba16Float`), and for noisy
-    /// candidates the packed noise ([`noise`](crate::kernel::noise), `R32Uint`).
+    /// For wrs the packed reservoirs ([`stored_reservoir`](crate::kernel::stored_reservoir)): words 0 and 1
+    /// (`Rg32Uint`), word 2 (`R32Uint`), and with A-ES the keys, or the gate's references (`R32Uint`). For taa and smr
+    /// the packed surfaces ([`surface`](crate::kernel::surface), `Rg32Uint`); for smr also their mip chain
+    /// (`Rgba16Float`), and for noisy candidates the packed noise ([`noise`](crate::kernel::noise), `R32Uint`).
     pub fn history_textures(&self) -> Vec<Texture> {
         self.history.split().0.planes.iter().map(|plane| plane.texture.clone()).collect()
     }

@@ -8,7 +8,9 @@
 
 use super::approx::smooth_step;
 use super::color::{ROUNDING, clip_to_box, luma, root_difference, roots, to_ycocg};
-use super::sparse_smr::{CONTRAST_ERROR, MOVED_ERROR, ObservedAround, Reconstructed, Reconstruction, relit};
+use super::sparse_smr::{
+    CONTRAST_ERROR, MOVED_ERROR, Observation, ObservedAround, Reconstructed, Reconstruction, relit,
+};
 use super::stored_sample::{FARTHEST_PX, StoredSample};
 use glam::{Vec2, Vec3};
 
@@ -24,8 +26,6 @@ const MOVED_PER_PX: f32 = 4.0;
 const MOST_PAST_EDGE: f32 = 5.0;
 /// Weight of a sample beside a pixel in the pixel's mean, where its own sample has 1.
 const BESIDE_WEIGHT: f32 = 0.35;
-/// Largest squared distance in pixels of such a sample: the eight pixels around.
-pub const BESIDE_PX2: f32 = 2.0;
 /// Steps of a stored level of detail. The first 240 codes are means: five runs of eight numbers of samples, and six
 /// deviations of each. The following ones are levels above 0.
 const CODES_PER_LOD: f32 = 7.0;
@@ -296,6 +296,13 @@ pub fn clipped(color: Vec3, change: Vec3) -> Vec3 {
     }
     let v = (roots(color) + change).max(Vec3::ZERO);
     v * v
+}
+
+/// Adds the squared difference of a sample and history, times its weight, to a sum for [`scattered_error`].
+#[inline(always)]
+pub fn add_scatter(scatter: f32, o: Observation, weight: f32) -> f32 {
+    let difference = root_difference(o.sampled, o.history).min(1e6);
+    scatter + (difference * difference) * weight
 }
 
 /// Expected difference of one sample from history around it: the larger of the model's value and the standard deviation

@@ -1,36 +1,7 @@
-//! Storage of a reservoir in three words, by integer arithmetic, so that rounding is the same on every device.
-//!
-//! | word | low 16 bits | high 16 bits |
-//! |---|---|---|
-//! | 0 | red, half | green, half |
-//! | 1 | blue, half | disparity, [`disparity_code`] |
-//! | 2 | bits 0-7: age in frames, stays at 255 | bits 8-31: weight sum, the upper 24 bits of its float |
-//!
-//! All zeros are an empty reservoir. The weight sum keeps 16 significant bits: for a stream of constant weight w under
-//! Bernoulli survival it stops growing between 256 w and 363 w, so that the probability of replacement never falls
-//! below 1/364 a frame. A half would stop at 63 w, and at 33 w with half arithmetic.
+//! Codes of numbers in stored words, by integer arithmetic, so that rounding is the same on every device: halves, and
+//! disparities in 16 bits.
 
-use super::sanitize::{self, MAX_HALF};
-use glam::Vec3;
-
-/// Largest stored weight sum: 2^100, exact in the stored bits.
-pub const MAX_W_SUM: f32 = f32::from_bits((127 + 100) << 23);
-
-/// Largest stored age, in frames.
-pub const MAX_AGE: u32 = 255;
-
-/// Contents of a stored reservoir.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stored {
-    /// The sample: linear color.
-    pub color: Vec3,
-    /// Disparity of the sample's surface in the frame that stored it; negative: unknown.
-    pub disparity: f32,
-    /// Weight sum of the reservoir; 0: empty.
-    pub w_sum: f32,
-    /// Frames since the sample was shaded.
-    pub age: u32,
-}
+use super::sanitize::MAX_HALF;
 
 /// Bits of the half nearest to `x` (ties to even), clamped to +-65504. Denormal halves are rounded correctly, too.
 #[inline]
@@ -87,40 +58,39 @@ pub fn disparity_value(code: u32) -> f32 {
     }
 }
 
-/// Packs a reservoir. The color must be finite.
+/// Relative difference of disparity within which texels are filtered together: wide enough for slopes, narrow enough
+/// for silhouettes.
+pub const TAP_RELATIVE: f32 = 0.1;
+
+/// Largest disparity that [`disparity`](super::depth::disparity) gives.
+const LARGEST_DISPARITY: f32 = 1e30;
+
+/// The first of the [`disparity_code`]s from `low` to `high` times the disparity `expected`, and their number: 0 if the
+/// expected disparity is negative.
 #[inline]
-pub fn pack(s: Stored) -> [u32; 3] {
-    // Not clamp(): devices differ on the sign of clamp(-0).
-    let w_sum = if s.w_sum > 0.0 { s.w_sum.min(MAX_W_SUM) } else { 0.0 };
-    let w = w_sum.to_bits();
-    let w_upper = w + 0x7f + ((w >> 8) & 1);
-    [
-        half_bits(s.color.x) | half_bits(s.color.y) << 16,
-        half_bits(s.color.z) | disparity_code(s.disparity) << 16,
-        (w_upper & 0xffff_ff00) | s.age.min(MAX_AGE),
-    ]
+pub fn codes_between(expected: f32, low: f32, high: f32) -> [u32; 2] {
+    // The limit keeps compilers from merging these factors with those of the disparity.
+    let limited = expected.min(LARGEST_DISPARITY);
+    let first = disparity_code(limited * low);
+    let last = disparity_code(limited * high);
+    [first, if expected < 0.0 { 0 } else { last - first + 1 }]
 }
 
-/// Words of an empty reservoir whose color is an infinite half, so that passes that read colors alone recognise it as
-/// empty.
-pub const EMPTY_WORDS: [u32; 3] = [0x7c00, 0xffff_0000, 0];
-
-/// Color and disparity from the first two words of a reservoir, and whether the color is valid.
+/// [`codes_between`] of the surface that has the disparity `expected`, within [`TAP_RELATIVE`].
 #[inline]
-pub fn unpack_sample(words: [u32; 2]) -> (Vec3, f32, bool) {
-    let color = Vec3::new(half_value(words[0]), half_value(words[0] >> 16), half_value(words[1]));
-    // Infinity and NaN decode to numbers above the largest half.
-    let largest = color.x.abs().max(color.y.abs()).max(color.z.abs());
-    (color, disparity_value(words[1] >> 16), largest <= MAX_HALF)
+pub fn tap_codes(expected: f32) -> [u32; 2] {
+    codes_between(expected, 1.0 - TAP_RELATIVE, 1.0 / (1.0 - TAP_RELATIVE))
 }
 
-/// Unpacks a reservoir. The result is finite for any words; a corrupt color or weight sum gives an empty reservoir.
+/// [`tap_codes`] for surfaces that have the disparities from `farthest` to `nearest`, both of them at least 0.
 #[inline]
-pub fn unpack(words: [u32; 3]) -> Stored {
-    let (color, disparity, valid) = unpack_sample([words[0], words[1]]);
-    let w_sum = sanitize::weight(f32::from_bits(words[2] & 0xffff_ff00));
-    if !valid || w_sum > MAX_W_SUM {
-        return Stored { color: Vec3::ZERO, disparity: -1.0, w_sum: 0.0, age: 0 };
-    }
-    Stored { color, disparity, w_sum, age: words[2] & 0xff }
+pub fn tap_codes_between(farthest: f32, nearest: f32) -> [u32; 2] {
+    let (first, last) = (tap_codes(farthest), tap_codes(nearest));
+    [first[0], last[0].max(first[0]) - first[0] + last[1]]
+}
+
+/// Whether the disparity in the high half of `word` is one of [`codes_between`].
+#[inline]
+pub fn has_code(word: u32, codes: [u32; 2]) -> bool {
+    (word >> 16).wrapping_sub(codes[0]) < codes[1]
 }

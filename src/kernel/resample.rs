@@ -1,15 +1,9 @@
 //! Resampling of stored surfaces at positions between texels.
 
-use super::pack::disparity_code;
-use super::surface::{EMPTY_LOD, Surface, lod_code, lod_value, surface_color};
+use super::lod::{EMPTY_LOD, lod_value};
+use super::pack::has_code;
+use super::surface::{Surface, lod_code, surface_color};
 use glam::Vec3;
-
-/// Relative difference of disparity within which texels are filtered together: wide enough for slopes, narrow enough
-/// for silhouettes.
-pub const TAP_RELATIVE: f32 = 0.1;
-
-/// Largest disparity that [`disparity`](super::depth::disparity) gives.
-const LARGEST_DISPARITY: f32 = 1e30;
 
 /// Least bilinear weight of the texel that replaces the nearest texel, where the nearest texel shows another surface.
 /// The limit keeps the shift of history below a pixel. The replacement keeps history at edges, where the nearest texel
@@ -109,36 +103,6 @@ pub fn taps_of(around: &TapsAround, index: u32) -> FourTaps {
         linear_x: [1.0 - fx, fx],
         linear_row: [1.0 - fy, fy, 0.0][index as usize],
     }
-}
-
-/// The first of the [`disparity_code`]s from `low` to `high` times the disparity `expected`, and their number: 0 if the
-/// expected disparity is negative.
-#[inline]
-pub fn codes_between(expected: f32, low: f32, high: f32) -> [u32; 2] {
-    // The limit keeps compilers from merging these factors with those of the disparity.
-    let limited = expected.min(LARGEST_DISPARITY);
-    let first = disparity_code(limited * low);
-    let last = disparity_code(limited * high);
-    [first, if expected < 0.0 { 0 } else { last - first + 1 }]
-}
-
-/// [`codes_between`] of the surface that has the disparity `expected`, within [`TAP_RELATIVE`].
-#[inline]
-pub fn tap_codes(expected: f32) -> [u32; 2] {
-    codes_between(expected, 1.0 - TAP_RELATIVE, 1.0 / (1.0 - TAP_RELATIVE))
-}
-
-/// [`tap_codes`] for surfaces that have the disparities from `farthest` to `nearest`, both of them at least 0.
-#[inline]
-pub fn tap_codes_between(farthest: f32, nearest: f32) -> [u32; 2] {
-    let (first, last) = (tap_codes(farthest), tap_codes(nearest));
-    [first[0], last[0].max(first[0]) - first[0] + last[1]]
-}
-
-/// Whether the disparity in the high half of `word` is one of [`codes_between`].
-#[inline]
-pub fn has_code(word: u32, codes: [u32; 2]) -> bool {
-    (word >> 16).wrapping_sub(codes[0]) < codes[1]
 }
 
 /// A tap.

@@ -1,6 +1,6 @@
 //! History resampled to another size, for renderers that change their resolution from frame to frame.
 
-use super::surface::MAX_LOD;
+use super::lod::MAX_LOD;
 
 /// Position, in a row or column of `old_len` pixels, of pixel `x` of a row or column of the new length. `ratio`: old
 /// length over new length.

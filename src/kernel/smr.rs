@@ -3,7 +3,7 @@
 
 use super::approx::{self, smooth_step};
 use super::color::{DARK, distance_of_roots, past_roots, roots};
-use super::surface::{COARSER_WIDTH, LOD_STEPS};
+use super::lod::{COARSER_WIDTH, LOD_STEPS};
 use crate::notes::{NoNotes, NoteStage, Notes};
 use glam::{Vec3, Vec4};
 use std::f32::consts::LOG2_E;

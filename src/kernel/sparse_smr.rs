@@ -8,23 +8,15 @@
 
 use super::approx::{self, smooth_step};
 use super::color::{DARK, luma, root_difference};
+use super::lod::COARSER_WIDTH;
 use super::noise::{Noise, history_share, noise_after, noise_confidence, noise_visibility};
-use super::pack::disparity_code;
+use super::pack::{disparity_code, half_bits, half_value};
 use super::stored_sample::{StoredSample, pack_color, unpack_color};
-use super::surface::COARSER_WIDTH;
 use glam::{Vec2, Vec3};
 use std::f32::consts::LOG2_E;
 
 /// Relative difference of disparity within which neighbouring samples share an estimate of light.
 pub const LIGHT_RELATIVE: f32 = 0.1;
-/// Relative difference of disparity within which a sample is interpolated for a pixel.
-pub const SAMPLE_RELATIVE: f32 = 0.05;
-/// Weight of a sample of another surface. It is so small that such a sample counts only where no sample near the pixel
-/// shows the pixel's own surface.
-pub const OTHER_SURFACE: f32 = 1e-3;
-/// Factor on the weight of a sample's gain and fit if they come from its neighbours only, because the sample itself was
-/// not compared with history.
-pub const BY_NEIGHBOURS: f32 = 1e-3;
 /// Expected difference between a sample and history that has not moved. The precision of storage causes it. In units of
 /// [`root_difference`].
 const STILL_ERROR: f32 = 0.3;
@@ -52,7 +44,7 @@ const AGREED: [f32; 2] = [0.6, 6.0];
 /// agree with the sample, and width over which it is.
 const AGAINST: [f32; 2] = [0.5, 0.25];
 /// Share of the errors without a gain that a gain of quads must leave at most, or it is not used.
-pub const RELIT_ERRORS: f32 = 0.8;
+const RELIT_ERRORS: f32 = 0.8;
 /// Largest deviation of an observation, and steps in which it is stored.
 const MOST_DEVIATION: f32 = 63.75;
 const DEVIATION_STEPS: f32 = 4.0;
@@ -77,13 +69,6 @@ const BLURRED_FRAMES: f32 = 8.0;
 /// Noisy samples: least share of history at which the mean is stored in the place of its nearest sample.
 const STAY_SHARE: f32 = 0.5;
 
-/// Level of detail of a candidate at distance `px` from the nearest sample of a pattern of level `coarsest`: 0 at the
-/// sample's own pixel.
-#[inline]
-pub fn candidate_level(px: f32, coarsest: f32) -> f32 {
-    (approx::ln_approx(1.0 + 2.0 * px) * LOG2_E).min(coarsest)
-}
-
 /// Comparison of a sample with history at its pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation {
@@ -98,6 +83,37 @@ pub struct Observation {
     pub confidence: f32,
     /// Deviation of the samples in a still mean, in the same units.
     pub deviation: f32,
+}
+
+/// No comparison.
+#[inline(always)]
+pub fn no_observation() -> Observation {
+    Observation { sampled: Vec3::ZERO, history: Vec3::ZERO, error: -1.0, confidence: 0.0, deviation: 0.0 }
+}
+
+/// Observation in two words: history's color; expected error as a half, confidence and deviation.
+#[inline(always)]
+pub fn pack_observation(o: Observation) -> [u32; 2] {
+    [pack_color(o.history), half_bits(o.error) | pack_known(o.confidence, o.deviation) << 16]
+}
+
+/// Inverse of [`pack_observation`], with the sample's color.
+#[inline(always)]
+pub fn unpack_observation(words: [u32; 2], sampled: Vec3) -> Observation {
+    let known = words[1] >> 16;
+    Observation {
+        sampled,
+        history: unpack_color(words[0]),
+        error: half_value(words[1]),
+        confidence: known_confidence(known),
+        deviation: known_deviation(known),
+    }
+}
+
+/// Whether packed words are a comparison.
+#[inline(always)]
+pub fn is_observed(words: [u32; 2]) -> bool {
+    half_value(words[1]) >= 0.0
 }
 
 /// Confidence and deviation of an observation, in sixteen bits.
@@ -181,6 +197,12 @@ pub struct ObservedAround {
     pub known: f32,
 }
 
+/// Sums over no observation.
+#[inline(always)]
+pub fn none_around() -> ObservedAround {
+    ObservedAround::default()
+}
+
 /// Adds an observation of `weight`.
 #[inline]
 pub fn add_observation(a: ObservedAround, o: Observation, weight: f32, spatial: f32) -> ObservedAround {
@@ -194,6 +216,33 @@ pub fn add_observation(a: ObservedAround, o: Observation, weight: f32, spatial: 
         spatial: a.spatial + spatial,
         known: a.known + spatial * o.confidence,
     }
+}
+
+/// Mean of the observations at the pixels of a quad, from their sums with weights of 1, and from the sum of their
+/// confidences; none without any.
+#[inline(always)]
+pub fn mean_observation(a: ObservedAround, confidence: f32) -> Observation {
+    let inverse = 1.0 / a.weight.max(1.0);
+    Observation {
+        sampled: a.sampled * inverse,
+        history: a.history * inverse,
+        error: if a.weight == 0.0 { -1.0 } else { a.error * inverse },
+        confidence: confidence * inverse,
+        deviation: a.deviation * inverse,
+    }
+}
+
+/// Weight by position of a quad around another one. `distance2` and `least`: squared distances in quads, its own and
+/// the smallest of those around.
+#[inline(always)]
+pub fn spatial_weight(distance2: f32, least: f32) -> f32 {
+    1.0 / (1.0 + distance2 / least)
+}
+
+/// Weight of an observation around a quad with the observation `own`, from its weight by position.
+#[inline(always)]
+pub fn neighbour_weight(own: Observation, other: Observation, spatial: f32) -> f32 {
+    if own.error < 0.0 { spatial * other.confidence } else { agreement(own, other, spatial) }
 }
 
 /// Expected difference of one sample from history around it.
@@ -240,6 +289,12 @@ pub fn relight(a: ObservedAround, error: f32) -> Vec3 {
 #[inline]
 pub fn errors_left(o: Observation, gain: Vec3) -> f32 {
     root_difference(o.sampled, gain * o.history) / (o.error + GATE_ERROR)
+}
+
+/// Whether a gain is used: whether it leaves less than the errors `without` it. Both are sums of [`errors_left`].
+#[inline(always)]
+pub fn gain_helps(left: f32, without: f32) -> bool {
+    left <= without * RELIT_ERRORS
 }
 
 /// Degree to which history after a gain fits at a sample's own pixel, in \[0, 1\]. It limits the fit of the
@@ -292,6 +347,13 @@ pub fn mean_fit(a: ObservedAround, confidence: f32) -> f32 {
     1.0 - confidence * smooth_step(from, from, root_difference(a.sampled * inverse, a.history * inverse))
 }
 
+/// As [`fit_around`], for noisy samples.
+#[inline(always)]
+pub fn noisy_fit_around(a: ObservedAround, left: f32) -> f32 {
+    let confidence = (a.weight / a.spatial).min(1.0);
+    fit(left / a.weight, confidence).min(mean_fit(a, confidence))
+}
+
 /// Estimate of light at a sample: gain and fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lit {
@@ -339,7 +401,7 @@ pub fn quad_lit(words: [u32; 4], i: u32) -> Lit {
     }
 }
 
-/// Word for [`has_code`](super::resample::has_code) of pixel `i` of a quad.
+/// Word for [`has_code`](super::pack::has_code) of pixel `i` of a quad.
 #[inline]
 pub fn quad_code(words: [u32; 4], i: u32) -> u32 {
     let pair = words[2 + (i >> 1) as usize];

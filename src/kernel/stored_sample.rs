@@ -16,8 +16,8 @@
 //!
 //! Packing an unpacked sample gives the same words, but for bit 19. All zeros are an empty texel.
 
+use super::lod::{EMPTY_LOD, LOD_STEPS, lod_value};
 use super::pack::{disparity_code, disparity_value};
-use super::surface::{EMPTY_LOD, LOD_STEPS, lod_value};
 use glam::{Vec2, Vec3};
 
 /// Largest stored color: 511/512 of 2^16.
@@ -161,7 +161,7 @@ pub fn moved_alike(words: [u32; 2], moved_px: f32) -> bool {
     if words[1] & MOVES != 0 { moved_px >= STOPPED_PX } else { moved_px <= STARTED_PX }
 }
 
-/// Word for [`has_code`](super::resample::has_code), with the code of a sample's disparity in its high half.
+/// Word for [`has_code`](super::pack::has_code), with the code of a sample's disparity in its high half.
 #[inline]
 pub fn code_word(words: [u32; 2]) -> u32 {
     (words[1] << 13) & 0xffe0_0000
@@ -337,4 +337,11 @@ pub fn interpolate(a: Around) -> Interpolated {
     let inverse = 1.0 / a.weight;
     let color = ((a.color - rise / det) * inverse).max(Vec3::ZERO);
     Interpolated { color, lod: a.lod * inverse, range, nearest }
+}
+
+/// Whether history has moved since its samples were shaded, by more than the resolution of their stored places.
+/// `motion` and `place_px`: in pixels.
+#[inline(always)]
+pub fn has_moved(motion: Vec2, place_px: Vec2) -> bool {
+    motion.x.abs().max(motion.y.abs()) > EXACT_PX || place_px.x.abs().max(place_px.y.abs()) > EXACT_PX
 }

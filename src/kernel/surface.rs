@@ -12,25 +12,15 @@
 //! Packing an unpacked sample gives the same words. All zeros are an empty texel, as textures are before anything is
 //! written to them.
 
+use super::lod::{EMPTY_LOD, LOD_STEPS, MAX_LOD, lod_value};
 use super::pack::{disparity_code, disparity_value, half_bits, half_value};
 use glam::{Vec3, Vec4};
-
-/// Code of the level of detail of an empty texel.
-pub const EMPTY_LOD: u32 = 0;
 
 /// Words of an empty texel, with the code of an unknown disparity.
 const EMPTY_SURFACE: [u32; 2] = [0, 0xffff_0000];
 
 /// Largest 14-bit float.
 pub const MAX_FLOAT14: f32 = 65472.0;
-
-/// Stored steps a level of detail.
-pub const LOD_STEPS: f32 = 7.0;
-
-/// Largest stored level of detail.
-pub const MAX_LOD: f32 = 62.0 * (1.0 / LOD_STEPS);
-/// Levels of detail by which history may be coarser than the candidate and still be accumulated.
-pub(super) const COARSER_WIDTH: f32 = 0.25;
 
 /// Stored sample of a surface point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,12 +77,6 @@ pub fn pack_surface(s: Surface) -> [u32; 2] {
 #[inline]
 pub fn lod_code(words: [u32; 2]) -> u32 {
     words[0] >> 28 | ((words[1] >> 10) & 0x30)
-}
-
-/// Level of detail of a code. That of an empty texel is finite and has no meaning.
-#[inline]
-pub fn lod_value(code: u32) -> f32 {
-    code.wrapping_sub(1) as f32 * (1.0 / LOD_STEPS)
 }
 
 /// Color of a sample.

@@ -1,7 +1,7 @@
 //! One pixel of the weighted reservoir method (Cantory et al., MIG 2025): gate, bias, combine.
 
 use super::sanitize::{self, MAX_HALF};
-use super::{approx, color, reservoir};
+use super::{approx, color, lab, reservoir};
 use glam::Vec3;
 
 /// Sampler: rule by which a reservoir chooses between its sample and the candidate. Code of `Sampler` in shaders.
@@ -219,9 +219,9 @@ pub fn difference(candidate: Vec3, sample: Vec3, code: GateCode) -> f32 {
     if code == GateCode::Off || candidate == sample {
         return 0.0;
     }
-    let reference = color::lab(candidate);
-    let stored = color::lab(sample);
-    if code == GateCode::Lightness { (reference.x - stored.x).abs() } else { color::delta_e94(reference, stored) }
+    let reference = lab::lab(candidate);
+    let stored = lab::lab(sample);
+    if code == GateCode::Lightness { (reference.x - stored.x).abs() } else { lab::delta_e94(reference, stored) }
 }
 
 /// Color that is stored and shown after [`decide_sample`]: the candidate or history's sample, or the mean of both by

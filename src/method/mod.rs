@@ -5,13 +5,17 @@
 
 #![cfg_attr(not(all(feature = "cpu", feature = "gpu")), allow(dead_code, reason = "each executor reads its part"))]
 
-mod levels;
+mod none;
 pub(crate) mod planned;
+mod smr;
+mod taa;
+mod taau;
+mod wrs;
 
-pub(crate) use levels::smr::smr_params;
+pub(crate) use smr::smr_params;
 #[cfg(feature = "cpu")]
-pub(crate) use levels::wrs::has_references;
-pub(crate) use levels::wrs::{inv_density_at_fovea, wrs_params};
+pub(crate) use wrs::has_references;
+pub(crate) use wrs::{inv_density_at_fovea, wrs_params};
 
 use crate::foveation::Filter;
 use crate::settings::{Method, MethodKind, Settings, Smr, Wrs};
@@ -37,11 +41,11 @@ impl MethodKind {
 
     fn entry(self) -> &'static Entry {
         match self {
-            Self::None => &levels::none::ENTRY,
-            Self::Taa => &levels::taa::ENTRY,
-            Self::Smr => &levels::smr::ENTRY,
-            Self::Wrs => &levels::wrs::ENTRY,
-            Self::Taau => &levels::taau::ENTRY,
+            Self::None => &none::ENTRY,
+            Self::Taa => &taa::ENTRY,
+            Self::Smr => &smr::ENTRY,
+            Self::Wrs => &wrs::ENTRY,
+            Self::Taau => &taau::ENTRY,
         }
     }
 }
@@ -155,7 +159,7 @@ pub(crate) type Overrides = Vec<(&'static str, u32)>;
 pub(crate) enum HistoryLayout {
     /// No history.
     Nothing,
-    /// Packed reservoirs ([`pack`](crate::kernel::pack)), and keys for A-ES.
+    /// Packed reservoirs ([`stored_reservoir`](crate::kernel::stored_reservoir)), and keys for A-ES.
     Reservoirs {
         /// Whether there are keys.
         keys: bool,

@@ -6,7 +6,7 @@ use crate::settings::ungated_of;
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::internal::{ContextDesc, DepthTest, Filter, Foveation, MethodKind, Reset, Settings};
 use afterimage::kernel::debug_view::PixelTrace;
-use afterimage::kernel::pack;
+use afterimage::kernel::stored_reservoir;
 use afterimage::kernel::surface::{Surface, unpack_surface};
 use afterimage::{DepthConvention, Exposure, FrameStats, Image, Verdict};
 use afterimage_testing::Draws;
@@ -105,7 +105,9 @@ impl Steps for CpuAfterimage {
 
     fn stick(&mut self) {
         // The candidate's share is below the smallest draw, 2^-24.
-        let heavy = |&w: &[u32; 3]| pack::pack(pack::Stored { w_sum: 1e12, ..pack::unpack(w) });
+        let heavy = |&w: &[u32; 3]| {
+            stored_reservoir::pack(stored_reservoir::Stored { w_sum: 1e12, ..stored_reservoir::unpack(w) })
+        };
         let words: Vec<_> = self.history().words().iter().map(heavy).collect();
         self.restore_history(&words);
     }

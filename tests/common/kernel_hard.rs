@@ -1,7 +1,7 @@
 //! Hard cases of the kernel's functions, H01 to H04, H08, H15, H17 to H21, H23, H30, H31, H33 and H36 to H39: laws that
 //! hold for the Rust functions and for their twins on a device. A law returns what it measured, or `None` without one.
 
-use afterimage::kernel::{pack, reservoir, sanitize};
+use afterimage::kernel::{reservoir, sanitize, stored_reservoir};
 use afterimage_testing::Draws;
 use glam::Vec3;
 
@@ -89,8 +89,13 @@ fn stepped(call: Call<'_>, steps: &[Step]) -> Option<Vec<(bool, [f32; 4])>> {
 }
 
 /// Sum and age after storage.
-fn kept(w_sum: f32, age: u32) -> pack::Stored {
-    pack::unpack(pack::pack(pack::Stored { color: Vec3::ONE, disparity: 0.1, w_sum, age }))
+fn kept(w_sum: f32, age: u32) -> stored_reservoir::Stored {
+    stored_reservoir::unpack(stored_reservoir::pack(stored_reservoir::Stored {
+        color: Vec3::ONE,
+        disparity: 0.1,
+        w_sum,
+        age,
+    }))
 }
 
 fn ulps(value: f32, exact: f64) -> f64 {

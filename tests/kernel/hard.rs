@@ -3,7 +3,7 @@
 use crate::kernel_hard::*;
 use afterimage::kernel::reservoir::Reservoir;
 use afterimage::kernel::wrs::{BiasCode, GateCode, Past, SamplerCode, WrsParams};
-use afterimage::kernel::{color, reservoir, rng, wrs};
+use afterimage::kernel::{color, lab, reservoir, rng, wrs};
 use glam::Vec3;
 
 /// Results of a function for one row.
@@ -20,10 +20,10 @@ fn call(function: &str, row: &[u32]) -> Vec<u32> {
             let (merged, keep_second) = reservoir::combine(first, second, f(4));
             vec![keep_second.into(), merged.w_sum.to_bits(), merged.count]
         }
-        "delta_e94" => floats(&[color::delta_e94(v(0), v(3))]),
+        "delta_e94" => floats(&[lab::delta_e94(v(0), v(3))]),
         "difference" => floats(&[wrs::difference(v(0), v(3), gate(6))]),
         "gate" => floats(&[wrs::gate(f(0), f(1), f(2))]),
-        "lab" => floats(&color::lab(v(0)).to_array()),
+        "lab" => floats(&lab::lab(v(0)).to_array()),
         "decide_sample" => {
             let params = WrsParams {
                 sampler: [SamplerCode::AChao, SamplerCode::AEs][row[0] as usize],

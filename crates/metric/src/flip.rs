@@ -6,7 +6,7 @@
 
 use crate::jod::pixels_per_degree;
 use crate::strip::{BLOCK, Plane, block, blocks, linear, store, strips};
-use afterimage::kernel::{approx, color};
+use afterimage::kernel::{approx, lab};
 use afterimage::{Image, ViewGeometry};
 use glam::{DMat3, DVec3, Mat3, Vec3};
 use pulp::{Arch, Simd, WithSimd};
@@ -237,7 +237,7 @@ fn xyz_from_linear() -> DMat3 {
 /// L\*a\*b\* with chroma scaled by lightness (Hunt effect, section 4.1.2).
 #[inline(always)]
 fn hunt_lab(linear: Vec3) -> Vec3 {
-    let lab = color::lab(linear);
+    let lab = lab::lab(linear);
     let chroma = 0.01 * lab.x;
     Vec3::new(lab.x, chroma * lab.y, chroma * lab.z)
 }

@@ -5,7 +5,7 @@
 //! that a processor may have. All of them compute the same bits: compilers neither contract nor reorder.
 
 use afterimage::Image;
-use afterimage::kernel::color;
+use afterimage::kernel::{color, lab};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -77,7 +77,7 @@ pub fn lab(linear: &[Plane; 3], range: Range<usize>) -> [Plane; 3] {
         let [r, g, b] = [0, 1, 2].map(|c| block(&linear[c], from.clone()));
         let mut lab = [[0.0; BLOCK]; 3];
         for i in 0..BLOCK {
-            [lab[0][i], lab[1][i], lab[2][i]] = color::lab(Vec3::new(r[i], g[i], b[i])).to_array();
+            [lab[0][i], lab[1][i], lab[2][i]] = lab::lab(Vec3::new(r[i], g[i], b[i])).to_array();
         }
         for (plane, values) in planes.iter_mut().zip(&lab) {
             store(values, plane, to.clone());
@@ -94,7 +94,7 @@ pub fn delta_e94(reference: &[Plane; 3], output: &[Plane; 3]) -> Plane {
         let [r, s] = [reference, output].map(|lab| [0, 1, 2].map(|c| block(&lab[c], range.clone())));
         let mut values = [0.0; BLOCK];
         for (i, value) in values.iter_mut().enumerate() {
-            *value = color::delta_e94(Vec3::new(r[0][i], r[1][i], r[2][i]), Vec3::new(s[0][i], s[1][i], s[2][i]));
+            *value = lab::delta_e94(Vec3::new(r[0][i], r[1][i], r[2][i]), Vec3::new(s[0][i], s[1][i], s[2][i]));
         }
         store(&values, &mut differences, range);
     }

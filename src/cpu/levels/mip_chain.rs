@@ -3,7 +3,7 @@
 
 use crate::image::Image;
 use crate::kernel::foveate::{level_coordinate, level_len, split};
-use crate::kernel::noise::{candidate_bilinear, candidate_mean};
+use crate::kernel::mip_noise::{candidate_bilinear, candidate_mean};
 use crate::kernel::smr::{mip_bilinear, mip_mean};
 use crate::kernel::surface::{mip_texel, round_mip};
 use crate::parallel::for_rows;

@@ -16,13 +16,15 @@ use crate::kernel::approx;
 use crate::kernel::color;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::foveate::mean_of_four;
+use crate::kernel::lod::MAX_LOD;
+use crate::kernel::mip_noise::{self, NOISY_LEVELS};
 use crate::kernel::noise;
-use crate::kernel::noise::{NOISY_LEVELS, Noise, pack_noise};
+use crate::kernel::noise::{Noise, pack_noise};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::sanitize::MAX_HALF;
 use crate::kernel::smr;
 use crate::kernel::smr::{Evidence, Matched, SmrParams};
-use crate::kernel::surface::{MAX_LOD, Surface, pack_surface};
+use crate::kernel::surface::{Surface, pack_surface};
 use crate::method::smr_params;
 use crate::notes::{NoteStage, Notes};
 use crate::settings::Settings;
@@ -183,7 +185,7 @@ impl Smr {
         let luma = color::luma(exposed);
         let confidence =
             [past, Noise { samples: noise.samples, variance: past.variance }].map(|n| noise::noise_confidence(n, luma));
-        let discounted = noise::discount_coarser(past, noise, history.lod - lod);
+        let discounted = mip_noise::discount_coarser(past, noise, history.lod - lod);
         let params =
             SmrParams { accumulate: noise::history_share(discounted, noise, self.params.accumulate), ..self.params };
         let reuse = smr::reuse_weight(lod, history.lod, params.accumulate, true, confidence);
@@ -219,7 +221,7 @@ impl Smr {
             predicted: matched,
             trust: source.trust,
             confidence,
-            noise: noise::noise_difference(past, around, color::luma(matched), inverse_unit),
+            noise: mip_noise::noise_difference(past, around, color::luma(matched), inverse_unit),
         };
         let result = smr::decide_noted(&evidence, &params, notes);
         let acceptance = result.fit * source.trust;

@@ -8,10 +8,11 @@ use crate::cpu::quads::Quads;
 use crate::kernel::color::expose;
 use crate::kernel::foveate::{block_sample, block_sample_level, split};
 use crate::kernel::noise::{Noise, expose_noise, unpack_noise};
+use crate::kernel::pack::tap_codes;
 use crate::kernel::reproject::Verdict;
 use crate::kernel::resample::{
     Resampled, STAND_IN_WEIGHT, corner_weight, gather_around, resolve, second_corner, sharp_sum, surface_tap,
-    tap_codes, taps_around,
+    taps_around,
 };
 use crate::kernel::smr::mip_bilinear;
 use crate::kernel::surface::{Surface, mip_texel, unpack_surface};

@@ -6,7 +6,7 @@ use crate::cpu::history::NextSurfaces;
 use crate::cpu::inputs::Inputs;
 use crate::cpu::pass::Pass;
 use crate::cpu::pixel::{Pixel, ProcessPixel, Targets, for_pixels};
-use crate::kernel::noise::candidate_texel;
+use crate::kernel::mip_noise::candidate_texel;
 use crate::notes::Notes;
 use crate::stats::FrameStats;
 

@@ -16,12 +16,13 @@ use crate::kernel::acuity;
 use crate::kernel::color;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::lattice::place_weight;
-use crate::kernel::noise::sample_difference;
-use crate::kernel::pack;
-use crate::kernel::pack::Stored;
+use crate::kernel::mip_noise::sample_difference;
+use crate::kernel::pack::{has_code, tap_codes};
 use crate::kernel::reproject::Verdict;
-use crate::kernel::resample::{Tap, gather_around, has_code, resolve, sharp_sum, tap_codes, taps_around};
+use crate::kernel::resample::{Tap, gather_around, resolve, sharp_sum, taps_around};
 use crate::kernel::rng;
+use crate::kernel::stored_reservoir;
+use crate::kernel::stored_reservoir::Stored;
 use crate::kernel::surface::Surface;
 use crate::kernel::wrs;
 use crate::kernel::wrs::{Past, Reference, SamplerCode, WrsParams};
@@ -70,7 +71,7 @@ struct Pixel {
 
 impl Pixel {
     fn note(&self, notes: &mut Vec<Note>) {
-        let Stored { color, disparity, w_sum, age } = pack::unpack(self.words);
+        let Stored { color, disparity, w_sum, age } = stored_reservoir::unpack(self.words);
         note_trace(&self.trace, notes);
         notes.note(NoteStage::Shown, "color", self.output, "linear light, in the unit of the given colors");
         notes.note(NoteStage::Stored, "words", self.words, "");
@@ -209,10 +210,10 @@ impl ViewPass<'_> {
         let decision = wrs::decide_sample(candidate, weight, Past { color: compared, ..past }, &params, draw);
 
         let color = wrs::combined(candidate, weight, past.color, &decision, params.sampler);
-        let age = if decision.take { 0 } else { (history.age + 1).min(pack::MAX_AGE) };
-        let mut words = pack::pack(Stored { color, disparity, w_sum: decision.w_sum, age });
+        let age = if decision.take { 0 } else { (history.age + 1).min(stored_reservoir::MAX_AGE) };
+        let mut words = stored_reservoir::pack(Stored { color, disparity, w_sum: decision.w_sum, age });
         if self.params.sampler == SamplerCode::AChaoMean && decision.w_sum == 0.0 {
-            words = pack::EMPTY_WORDS;
+            words = stored_reservoir::EMPTY_WORDS;
         }
         let mut next = reference;
         if self.has_references && usable {
@@ -268,7 +269,7 @@ impl ViewPass<'_> {
         let inputs = &self.inputs;
         let [qx, qy] = inputs.nearest(x, y, motion, notes)?;
         let at = qy as usize * inputs.size[0] as usize + qx as usize;
-        let stored = pack::unpack(self.past.words[at]);
+        let stored = stored_reservoir::unpack(self.past.words[at]);
         notes.note(NoteStage::Reprojection, "its weight sum", stored.w_sum, "0: empty");
         notes.note(NoteStage::Reprojection, "its disparity", stored.disparity, "1/distance");
         if stored.w_sum == 0.0 {
@@ -315,7 +316,7 @@ impl ViewPass<'_> {
         let width = self.inputs.size[0] as i32;
         let tap = |[x, y]: [i32; 2]| {
             let [colors, more, _] = self.past.words[(y * width + x) as usize];
-            let (color, _, valid) = pack::unpack_sample([colors, more]);
+            let (color, _, valid) = stored_reservoir::unpack_sample([colors, more]);
             Tap { color, lod: 0.0, same: valid && (any_code || has_code(more, codes)) }
         };
         let gathered = gather_around(&taps, tap);

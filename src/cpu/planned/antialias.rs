@@ -1,6 +1,6 @@
 //! Antialiasing in the pass for jittered frames: history stores means of samples instead of single samples.
 
-use super::sparse_history::{Surroundings, has_moved};
+use super::sparse_history::Surroundings;
 use super::view::View;
 use crate::cpu::quads::Quads;
 use crate::kernel::antialias::{
@@ -10,7 +10,7 @@ use crate::kernel::antialias::{
 use crate::kernel::color::root_difference;
 use crate::kernel::rng;
 use crate::kernel::sparse_smr::{Reconstruction, relit};
-use crate::kernel::stored_sample::{StoredSample, pack_color_by, pack_stored};
+use crate::kernel::stored_sample::{StoredSample, has_moved, pack_color_by, pack_stored};
 use crate::notes::{NoteStage, Notes};
 use glam::{Vec2, Vec3};
 
@@ -65,7 +65,7 @@ impl View<'_> {
         let farthest_motion = self.inputs.motion(farthest_at[0], farthest_at[1]);
         let [own_px, nearest_px, farthest_px] = [own_motion, motion, farthest_motion].map(Vec2::from);
         // Still edges have long means of their own samples. Others would make them worse.
-        let is_moving_edge = edge && level > 0 && has_moved(own_motion, nearest_px);
+        let is_moving_edge = edge && level > 0 && has_moved(own_px, nearest_px);
         let mut surface = Surroundings { is_edge: edge, is_moving_edge, ..alone };
         if stands_before(own, nearest, own_px, nearest_px, level == 0) {
             let moved_px = self.inputs.moved_px(nearest_at, nearest, motion);

@@ -1,20 +1,12 @@
 //! Candidate of a pixel: the samples around it, and their light.
 
 use super::view::NO_NOISE;
-use crate::kernel::antialias::BESIDE_PX2;
-use crate::kernel::color::luma;
+use crate::kernel::candidate::{Borrowed, SampleSums, borrow_around, is_beside, sample_mean};
 use crate::kernel::demodulation::AlbedoChange;
-use crate::kernel::noise::{Noise, borrowed};
-use crate::kernel::resample::codes_between;
-use crate::kernel::sparse_smr::{BY_NEIGHBOURS, Lit, OTHER_SURFACE, Observation, SAMPLE_RELATIVE, candidate_level};
+use crate::kernel::noise::Noise;
+use crate::kernel::sparse_smr::{Lit, Observation};
 use crate::notes::{NoteStage, Notes};
-use glam::Vec3;
-
-/// [`codes_between`] of the samples that are interpolated for a pixel with the disparity `disparity`.
-#[inline(always)]
-pub(super) fn sample_codes(disparity: f32) -> [u32; 2] {
-    codes_between(disparity, 1.0 - SAMPLE_RELATIVE, 1.0 / (1.0 - SAMPLE_RELATIVE))
-}
+use glam::{Vec3, Vec4};
 
 pub(super) struct Candidate {
     pub color: Vec3,
@@ -33,7 +25,7 @@ pub(super) struct Candidate {
     /// Of frames with albedo.
     pub albedo: AlbedoChange,
     /// Of a noisy pixel with a sample: mean of all samples around it, its own included, and the mean variance of one.
-    pub around: (Vec3, f32),
+    pub around: Vec4,
 }
 
 impl Candidate {
@@ -49,19 +41,37 @@ impl Candidate {
         is_own: false,
         beside: None,
         albedo: AlbedoChange::NONE,
-        around: (Vec3::ZERO, 0.0),
+        around: Vec4::ZERO,
     };
 
-    /// The noisy sample of a pixel whose history is a mean of `past` samples, with its share of the mean around it. Its
-    /// variance takes its share, too: a pixel whose samples all missed a lamp would call its neighbours' light a
-    /// change.
+    /// Candidate of a pixel outside the fovea from the samples around it; `own`: color and alpha of its own sample, and
+    /// the fit of history there.
+    #[inline(always)]
+    pub fn of_samples(sums: SampleSums, coarsest: f32, own: Option<(Vec3, f32, f32)>) -> Self {
+        if sums.weight == 0.0 {
+            return Self::NONE;
+        }
+        let mean = sample_mean(sums, coarsest);
+        let (color, alpha, own_fit) = own.unwrap_or((mean.color, mean.alpha, 1.0));
+        Self {
+            color,
+            usable: true,
+            lod: if own.is_some() { 0.0 } else { mean.lod },
+            range: [sums.lowest, sums.highest],
+            gain: mean.gain,
+            fit: mean.fit.min(own_fit),
+            alpha,
+            is_own: own.is_some(),
+            beside: is_beside(sums).then_some(sums.beside),
+            ..Self::NONE
+        }
+    }
+
+    /// The noisy sample of a pixel whose history is a mean of `past` samples, with its share of the mean around it.
     #[inline(always)]
     pub fn borrowing(self, past: f32) -> Self {
-        let (mean, variance) = self.around;
-        let share = borrowed(past, Noise { variance, ..self.noise }, luma(mean));
-        let variance = self.noise.variance + (variance - self.noise.variance) * share;
-        let noise = Noise { variance, ..self.noise };
-        Self { color: self.color + (mean - self.color) * share, noise, ..self }
+        let Borrowed { color, noise } = borrow_around(self.color, self.noise, self.around, past);
+        Self { color, noise, ..self }
     }
 
     /// With the texture of the pixel's own albedo.
@@ -107,91 +117,5 @@ pub(super) fn note_sample(
         let values = [x as f32, y as f32, history.x, history.y, history.z, error, confidence];
         let unit = "x y px, linear light, expected difference (100 from black to white), confidence";
         notes.note(NoteStage::Comparison, "history at sample", values, unit);
-    }
-}
-
-/// Sums over the samples around a pixel.
-pub(super) struct Sums {
-    color: Vec3,
-    alpha: f32,
-    weight: f32,
-    gain: Vec3,
-    fit: f32,
-    valid: f32,
-    /// Smallest and largest color.
-    range: [Vec3; 2],
-    /// Squared distance in pixels of the nearest sample of the pixel's surface.
-    pub nearest_px2: f32,
-    /// Color of this sample, the first of equally near ones.
-    nearest: Vec3,
-    /// Color and alpha of the pixel's own sample, and the fit of history there.
-    pub own: Option<(Vec3, f32, f32)>,
-}
-
-impl Sums {
-    pub const NOTHING: Self = Self {
-        color: Vec3::ZERO,
-        alpha: 0.0,
-        weight: 0.0,
-        gain: Vec3::ZERO,
-        fit: 0.0,
-        valid: 0.0,
-        range: [Vec3::splat(f32::MAX), Vec3::ZERO],
-        nearest_px2: f32::MAX,
-        nearest: Vec3::ZERO,
-        own: None,
-    };
-
-    /// Adds a sample with the weight `share` by its place, and returns its weight. `alike`: whether it shows the
-    /// pixel's surface.
-    #[inline(always)]
-    pub fn add(&mut self, (color, alpha): (Vec3, f32), lit: Lit, share: f32, px2: f32, alike: bool) -> f32 {
-        let weight = share * if alike { 1.0 } else { OTHER_SURFACE };
-        let known = weight * if lit.is_own { 1.0 } else { BY_NEIGHBOURS };
-        self.color += color * weight;
-        self.alpha += alpha * weight;
-        self.weight += weight;
-        self.gain += lit.gain * known;
-        self.fit += lit.fit * known;
-        self.valid += known;
-        self.range = [self.range[0].min(color), self.range[1].max(color)];
-        if alike && px2 < self.nearest_px2 {
-            (self.nearest_px2, self.nearest) = (px2, color);
-        }
-        weight
-    }
-
-    /// Whether a sample shows the pixel's surface.
-    #[inline(always)]
-    pub fn has_surface(&self) -> bool {
-        self.nearest_px2 < f32::MAX
-    }
-
-    /// Candidate of the pixel, without noise, where samples have a distance of 2^`level` pixels.
-    #[inline(always)]
-    pub fn candidate(self, level: u32) -> Candidate {
-        if self.weight == 0.0 {
-            return Candidate::NONE;
-        }
-        let coarsest = level as f32;
-        let inverse = 1.0 / self.weight;
-        let (color, alpha, own_fit) = self.own.unwrap_or((self.color * inverse, self.alpha * inverse, 1.0));
-        Candidate {
-            color,
-            usable: true,
-            lod: match self.nearest_px2 {
-                f32::MAX => coarsest + 1.0,
-                px2 => candidate_level(px2.sqrt(), coarsest),
-            },
-            range: self.range,
-            gain: self.gain * (1.0 / self.valid),
-            fit: (self.fit * (1.0 / self.valid)).min(own_fit),
-            noise: NO_NOISE,
-            alpha,
-            is_own: self.own.is_some(),
-            beside: (self.nearest_px2 <= BESIDE_PX2).then_some(self.nearest),
-            albedo: AlbedoChange::NONE,
-            around: (Vec3::ZERO, 0.0),
-        }
     }
 }

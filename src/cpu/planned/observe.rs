@@ -1,39 +1,15 @@
 //! Comparison of samples with history at their pixels.
 
-use super::sparse_history::{Found, has_moved};
+use super::sparse_history::Found;
 use super::view::View;
 use crate::kernel::antialias::{Mean, expected_mean_error};
 use crate::kernel::color::luma;
 use crate::kernel::color::root_difference;
 use crate::kernel::noise::expected_noise;
-use crate::kernel::pack::{half_bits, half_value};
-use crate::kernel::sparse_smr::{
-    Observation, expected_error, known_confidence, known_deviation, lod_confidence, noisy_lod_confidence, pack_known,
-};
-use crate::kernel::stored_sample::{pack_color, unpack_color};
+use crate::kernel::sparse_smr::{Observation, expected_error, lod_confidence, noisy_lod_confidence};
+use crate::kernel::stored_sample::has_moved;
 use crate::notes::NoNotes;
 use glam::{Vec2, Vec3};
-
-/// Observation in two words: history's color, expected error and confidence as halves.
-pub(super) fn pack_observation(o: Option<Observation>) -> [u32; 2] {
-    match o {
-        Some(o) => [pack_color(o.history), half_bits(o.error) | pack_known(o.confidence, o.deviation) << 16],
-        None => [0, half_bits(-1.0)],
-    }
-}
-
-/// Inverse of [`pack_observation`], with the sample's color.
-#[inline(always)]
-pub(super) fn unpack_observation(words: [u32; 2], sampled: impl FnOnce() -> Vec3) -> Option<Observation> {
-    let error = half_value(words[1]);
-    (error >= 0.0).then(|| Observation {
-        sampled: sampled(),
-        history: unpack_color(words[0]),
-        error,
-        confidence: known_confidence(words[1] >> 16),
-        deviation: known_deviation(words[1] >> 16),
-    })
-}
 
 impl View<'_> {
     /// Comparison of the sample of a pixel with history; `None` if either is missing, and at silhouettes.
@@ -55,11 +31,15 @@ impl View<'_> {
         let [low, high] = history.range;
         let contrast = root_difference(low, high);
         let mut error = if self.antialiases {
-            expected_mean_error(Mean { lod: history.lod, ..mean }, contrast, has_moved(surface.motion, Vec2::ZERO))
+            expected_mean_error(
+                Mean { lod: history.lod, ..mean },
+                contrast,
+                has_moved(surface.motion.into(), Vec2::ZERO),
+            )
         } else {
-            expected_error(history.lod, contrast, has_moved(surface.motion, history.nearest.place_px))
+            expected_error(history.lod, contrast, has_moved(surface.motion.into(), history.nearest.place_px))
         };
-        let is_still_mean = self.antialiases && !has_moved(surface.motion, Vec2::ZERO);
+        let is_still_mean = self.antialiases && !has_moved(surface.motion.into(), Vec2::ZERO);
         let deviation = if is_still_mean { mean.deviation } else { 0.0 };
         let mut confidence = lod_confidence(history.lod);
         if self.is_noisy {

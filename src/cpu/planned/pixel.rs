@@ -2,7 +2,7 @@
 
 use super::albedo::Untextured;
 use super::quad_samples::QuadLights;
-use super::sparse_history::{Found, Source, has_moved};
+use super::sparse_history::{Found, Source};
 use super::view::{NO_NOISE, View};
 use crate::cpu::pixel::{Pixel, ProcessPixel};
 use crate::cpu::quads::Quads;
@@ -14,7 +14,7 @@ use crate::kernel::noise::pack_noise;
 use crate::kernel::reproject::Verdict;
 use crate::kernel::sanitize;
 use crate::kernel::sparse_smr::{Reconstructed, Reconstruction, accumulate, reconstruct, relit, result_alpha, worn};
-use crate::kernel::stored_sample::{StoredSample, pack_stored, with_motion};
+use crate::kernel::stored_sample::{StoredSample, has_moved, pack_stored, with_motion};
 use crate::notes::{NoteStage, Notes};
 use crate::stats::FrameStats;
 use glam::{Vec2, Vec3};
@@ -100,8 +100,8 @@ impl LitView<'_> {
                 result = Reconstructed { color: output, stored, share, keeps_nearest: true, stored_share: 1.0 };
             } else {
                 let moved = match view.antialiases {
-                    true => has_moved(surface.motion, Vec2::ZERO),
-                    false => has_moved([0.0; 2], history.nearest.place_px),
+                    true => has_moved(surface.motion.into(), Vec2::ZERO),
+                    false => has_moved(Vec2::ZERO, history.nearest.place_px),
                 };
                 let inputs = Reconstruction {
                     candidate: candidate.color,

@@ -15,11 +15,11 @@ use crate::kernel::color::expose;
 use crate::kernel::color::luma;
 use crate::kernel::color::root_difference;
 use crate::kernel::noise::{Noise, NoiseSum, add_noise, mean_noise, noise_need};
+use crate::kernel::pack::tap_codes;
 use crate::kernel::quads::{
     ENOUGH_SAMPLES, IN_FOVEA, IN_MIDDLE, IN_PERIPHERY, KEYS, MOST_PATHS, WHOLE, acuity, asked_px, in_pattern, in_turn,
     known_samples, need, no_history_need, path_key, paths, place_in_quad, quad_key, region, share_in_block, threshold,
 };
-use crate::kernel::resample::tap_codes;
 use crate::kernel::sanitize;
 use crate::kernel::stored_sample::{is_empty, unpack_full};
 use crate::method::HistoryLayout;

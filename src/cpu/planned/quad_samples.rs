@@ -1,23 +1,26 @@
 //! Samples of shaded quads: their comparison with history, gain and fit around them, and candidates of pixels.
 
-use super::candidate::{Candidate, Sums, note_sample, sample_codes};
+use super::candidate::{Candidate, note_sample};
 use super::light::{Neighbour, observed_around, votes};
-use super::observe::{pack_observation, unpack_observation};
 use super::view::{Samples, View};
 use crate::cpu::quads::{Quads, offset_px2};
+use crate::kernel::candidate::{
+    NoisySums, add_noisy, add_sample, has_surface, no_samples, noisy_mean, sample_codes, sample_weight,
+};
 use crate::kernel::demodulation::{AlbedoChange, add_albedo, candidate_change, no_albedos};
 use crate::kernel::depth::INVALID_DISPARITY;
-use crate::kernel::noise::{NoiseSum, add_noise, mean_noise, noisy_share};
+use crate::kernel::noise::{NoiseSum, add_noise, mean_noise};
+use crate::kernel::pack::has_code;
 use crate::kernel::quads::WHOLE;
-use crate::kernel::resample::has_code;
 use crate::kernel::sanitize;
 use crate::kernel::sparse_smr::{
-    LIGHT_RELATIVE, Observation, ObservedAround, QuadLit, add_observation, agreement, fit, fit_around, fit_by_votes,
-    mean_fit, own_fit, pack_quad_lit, quad_code, quad_lit,
+    LIGHT_RELATIVE, Observation, QuadLit, add_observation, fit_around, fit_by_votes, is_observed, mean_observation,
+    neighbour_weight, no_observation, noisy_fit_around, none_around, own_fit, pack_observation, pack_quad_lit,
+    quad_code, quad_lit, spatial_weight, unpack_observation,
 };
 use crate::notes::Notes;
 use crate::parallel::collect;
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 /// Light of the shaded quads, quad by quad ([`pack_quad_lit`]).
 pub(super) type QuadLights = Vec<[u32; 4]>;
@@ -44,16 +47,17 @@ impl View<'_> {
             let px = [i % width, i / width];
             let level = quads.level_at(px);
             if level == 0 || !quads.is_shaded(px) {
-                return pack_observation(None);
+                return pack_observation(no_observation());
             }
             let (sampled, usable) = self.color_px(quads, px);
-            pack_observation(self.observe_px(px, level, sampled, usable))
+            pack_observation(self.observe_px(px, level, sampled, usable).unwrap_or_else(no_observation))
         })
     }
 
     #[inline(always)]
     fn observation_px(&self, quads: &Quads, px: [u32; 2], observed: &Samples) -> Option<Observation> {
-        unpack_observation(observed[(px[1] * self.inputs.size[0] + px[0]) as usize], || self.color_px(quads, px).0)
+        let words = observed[(px[1] * self.inputs.size[0] + px[0]) as usize];
+        is_observed(words).then(|| unpack_observation(words, self.color_px(quads, px).0))
     }
 
     /// Gain and fit around each shaded quad. Quads of the fovea are not compared.
@@ -71,25 +75,19 @@ impl View<'_> {
         let disparity_of = |[x, y]: [u32; 2]| self.inputs.disparity(x, y);
         let disparity = disparity_of(first.unwrap_or(quad.map(|v| 2 * v)));
         let alike = |px: [u32; 2]| self.alike(disparity, disparity_of(px), LIGHT_RELATIVE);
-        let mut own: Option<Observation> = None;
+        let mut own = no_observation();
         if first.is_some() {
             let all =
                 self.pixels_of(quad).filter(|&px| alike(px)).filter_map(|px| self.observation_px(quads, px, observed));
-            let mut sum = ObservedAround::default();
+            let mut sum = none_around();
             let mut confidence = 0.0;
             for o in all {
                 sum = add_observation(sum, o, 1.0, 1.0);
                 confidence += o.confidence;
             }
-            let inverse = 1.0 / sum.weight;
-            own = Some(Observation {
-                sampled: sum.sampled * inverse,
-                history: sum.history * inverse,
-                error: sum.error * inverse,
-                confidence: confidence * inverse,
-                deviation: sum.deviation * inverse,
-            });
+            own = mean_observation(sum, confidence);
         }
+        let is_own = own.error >= 0.0;
         let distance2 = |other: [u32; 2]| offset_px2(other[0], quad[0]) + offset_px2(other[1], quad[1]);
         let least = quads.around(quad).map(distance2).fold(f32::MAX, f32::min);
         let mut near: Vec<Neighbour> = vec![];
@@ -97,13 +95,11 @@ impl View<'_> {
         let mut others = 0;
         for other in quads.around(quad).chain([quad]).filter(|_| is_compared) {
             others = near.len();
-            let spatial = 1.0 / (1.0 + distance2(other) / least);
+            let spatial = spatial_weight(distance2(other), least);
             for px in self.pixels_of(other) {
                 let Some(observation) = self.observation_px(quads, px, observed) else { continue };
                 if alike(px) {
-                    let weight =
-                        own.map_or(spatial * observation.confidence, |own| agreement(own, observation, spatial));
-                    near.push((observation, weight, spatial));
+                    near.push((observation, neighbour_weight(own, observation, spatial), spatial));
                 }
             }
         }
@@ -116,10 +112,9 @@ impl View<'_> {
             let (relit, left) = self.relit_around(around, near);
             gain = relit;
             fits = if self.is_noisy {
-                let confidence = (around.weight / around.spatial).min(1.0);
-                fit(left / around.weight, confidence).min(mean_fit(around, confidence))
+                noisy_fit_around(around, left)
             } else {
-                let fit_of_quad = own.map_or(0.0, |own| own_fit(own, Vec3::ONE));
+                let fit_of_quad = if is_own { own_fit(own, Vec3::ONE) } else { 0.0 };
                 fit_around(around, left, fit_by_votes(around, votes(near().take(others)), fit_of_quad))
             };
         }
@@ -130,7 +125,7 @@ impl View<'_> {
             own_fits[i] = self.observation_px(quads, px, observed).map_or(1.0, |own| fit_of_own(own, gain));
             disparities[i] = disparity_of(px);
         }
-        pack_quad_lit(QuadLit { gain, fit: fits, own_fits, is_own: own.is_some(), disparities })
+        pack_quad_lit(QuadLit { gain, fit: fits, own_fits, is_own, disparities })
     }
 
     /// Candidate of a pixel, and its gain and fit, from the shaded quads around it.
@@ -155,7 +150,7 @@ impl View<'_> {
             return Candidate { color, usable, alpha, is_own: usable, albedo, ..Candidate::NONE };
         }
         let codes = sample_codes(disparity);
-        let mut sums = Sums::NOTHING;
+        let (mut sums, mut own) = (no_samples(), None);
         let columns = quads.size()[0];
         let mut noises = NoiseSum::default();
         let own_albedo = self.albedo_at(px);
@@ -170,9 +165,9 @@ impl View<'_> {
             let lit = quad_lit(words, place);
             let alike = !self.inputs.tests_depth() || has_code(quad_code(words, place), codes);
             let px2 = offset_px2(at[0], px[0]) + offset_px2(at[1], px[1]);
-            let share = if at == px { 1.0 } else { 1.0 / px2 };
+            let weight = sample_weight(px2, alike);
             let alpha = self.alpha_at(at);
-            let weight = sums.add((color, alpha), lit, share, px2, alike);
+            sums = add_sample(sums, color, alpha, lit, weight, px2, alike);
             if self.albedo.is_some() {
                 albedos = add_albedo(albedos, own_albedo, self.albedo_at(at), color, weight);
             }
@@ -183,16 +178,15 @@ impl View<'_> {
                 noises = add_noise(noises, self.sample_noise(at), weight);
             }
             if at == px {
-                sums.own = Some((color, alpha, lit.own_fit));
+                own = Some((color, alpha, lit.own_fit));
             }
         };
         quads.samples_around(px).for_each(&mut add);
-        let has_surface = sums.has_surface();
-        let mut candidate = sums.candidate(level);
+        let mut candidate = Candidate::of_samples(sums, level as f32, own);
         if self.albedo.is_some() && candidate.is_own {
             candidate.albedo = AlbedoChange::none(own_albedo.truncate());
         } else if self.albedo.is_some() && candidate.usable {
-            let change = candidate_change(albedos, own_albedo, has_surface);
+            let change = candidate_change(albedos, own_albedo, has_surface(sums));
             candidate = candidate.textured(change);
         }
         if self.is_noisy && candidate.usable {
@@ -201,13 +195,13 @@ impl View<'_> {
         if self.is_noisy && candidate.is_own {
             candidate.around = self.mean_around(quads, px, codes, lights);
         }
-        Candidate { lod: if candidate.is_own { 0.0 } else { candidate.lod }, ..candidate }
+        candidate
     }
 
     /// Mean of the samples around a noisy pixel with a sample, its own included, and the mean variance of one.
     #[inline(always)]
-    fn mean_around(&self, quads: &Quads, px: [u32; 2], codes: [u32; 2], lights: &QuadLights) -> (Vec3, f32) {
-        let (mut sum, mut variance, mut weight) = (Vec3::ZERO, 0.0, 0.0);
+    fn mean_around(&self, quads: &Quads, px: [u32; 2], codes: [u32; 2], lights: &QuadLights) -> Vec4 {
+        let mut sums = NoisySums::default();
         for at in quads.all_samples_around(px) {
             let (color, usable) = self.color_px(quads, at);
             let words = lights[Quads::index(at.map(|v| v / 2), quads.size()[0])];
@@ -215,14 +209,9 @@ impl View<'_> {
             let alike = !self.inputs.tests_depth() || has_code(quad_code(words, place), codes);
             if usable && (alike || at == px) {
                 let px2 = offset_px2(at[0], px[0]) + offset_px2(at[1], px[1]);
-                let noise = self.sample_noise(at);
-                let share = noisy_share(noise.samples, px2);
-                sum += color * share;
-                variance += noise.variance * share;
-                weight += share;
+                sums = add_noisy(sums, color, self.sample_noise(at), px2);
             }
         }
-        let inverse = 1.0 / weight;
-        (sum * inverse, variance * inverse)
+        noisy_mean(sums)
     }
 }

@@ -7,11 +7,11 @@ use crate::cpu::inputs::Previous;
 use crate::kernel::antialias::{Mean, ONE_SAMPLE_LOD, is_of_surfaces, mean_lod, mean_of};
 use crate::kernel::color::expose;
 use crate::kernel::noise::{Noise, expose_noise, unpack_noise};
+use crate::kernel::pack::{has_code, tap_codes, tap_codes_between};
 use crate::kernel::reproject::Verdict;
-use crate::kernel::resample::{has_code, tap_codes, tap_codes_between};
 use crate::kernel::stored_sample::{
-    Around, EXACT_PX, INVERSE_MEAN_REACH, INVERSE_REACH, Interpolated, StoredSample, add_stored, can_replace,
-    code_word, interpolate, is_empty, moved_alike, stored_weight, unpack_full, unpack_stored,
+    Around, INVERSE_MEAN_REACH, INVERSE_REACH, Interpolated, StoredSample, add_stored, can_replace, code_word,
+    interpolate, is_empty, moved_alike, stored_weight, unpack_full, unpack_stored,
 };
 use crate::notes::{NoteStage, Notes};
 use glam::{Vec2, Vec3};
@@ -206,11 +206,4 @@ impl View<'_> {
         });
         Found { history, noise: self.stored_noise(nearest_texel), mean: kept, alpha, albedos }
     }
-}
-
-/// Whether history has moved since its samples were shaded, by more than the resolution of their stored places.
-#[inline(always)]
-pub(super) fn has_moved(motion: [f32; 2], place_px: Vec2) -> bool {
-    let farthest = |x: f32, y: f32| x.abs().max(y.abs()) > EXACT_PX;
-    farthest(motion[0], motion[1]) || farthest(place_px.x, place_px.y)
 }

@@ -14,7 +14,7 @@ proptest! {
         let (out, ..) = one(&mut post, 1, &still(noise(SIZE, "h")));
         prop_assert!(out.pixels().iter().flatten().all(|v| v.is_finite()));
         for &w in post.history().words() {
-            let s = afterimage::kernel::pack::unpack(w);
+            let s = afterimage::kernel::stored_reservoir::unpack(w);
             prop_assert!(s.w_sum > 0.0 && s.color.is_finite(), "every reservoir holds a sample again");
         }
     }

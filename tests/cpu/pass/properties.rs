@@ -4,7 +4,7 @@
 use super::*;
 use crate::any_frame::{SIZE, all_settings, any_frame};
 use crate::images::{held_words, traced};
-use afterimage::kernel::pack;
+use afterimage::kernel::stored_reservoir;
 use afterimage::kernel::surface::unpack_surface;
 use std::collections::HashSet;
 
@@ -26,7 +26,13 @@ fn show(post: &mut CpuAfterimage, index: u64, frames: &[&View]) -> (Vec<Color>, 
 /// Possible outputs of a color: itself, and its stored value in wrs.
 fn presented(c: [f32; 3]) -> [[u32; 3]; 2] {
     let (color, _) = afterimage::kernel::sanitize::color(glam::Vec3::from(c));
-    let stored = pack::unpack(pack::pack(pack::Stored { color, disparity: 1.0, w_sum: 1.0, age: 0 })).color;
+    let stored = stored_reservoir::unpack(stored_reservoir::pack(stored_reservoir::Stored {
+        color,
+        disparity: 1.0,
+        w_sum: 1.0,
+        age: 0,
+    }))
+    .color;
     [color, stored].map(|c| c.to_array().map(f32::to_bits))
 }
 
@@ -127,7 +133,7 @@ proptest! {
             // No non-finite value is left, and empty pixels are filled again.
             prop_assert!(hurt.history().surfaces().iter().all(|&w| unpack_surface(w).lod >= 0.0));
             prop_assert!(held_words(&hurt).len() == held_words(&clean).len());
-            prop_assert!(hurt.history().words().iter().all(|&w| pack::unpack(w).w_sum > 0.0));
+            prop_assert!(hurt.history().words().iter().all(|&w| stored_reservoir::unpack(w).w_sum > 0.0));
         }
     }
 }

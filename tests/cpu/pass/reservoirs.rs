@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::settings::wrs;
-use afterimage::kernel::pack;
+use afterimage::kernel::{pack, stored_reservoir};
 use afterimage_testing::holds;
 
 /// Words with an impossible weight sum or color.
@@ -46,7 +46,7 @@ fn h19_a_corrupt_sum_resets_its_pixel_alone_for_one_frame() {
             let at = (i % 64, i / 64);
             if i % 7 == 3 {
                 assert_eq!(out.at(at.0, at.1), frame(6).color.at(at.0, at.1), "the candidate");
-                let (t, now) = (trace.at(at.0, at.1), pack::unpack(hurt.history().words()[i]));
+                let (t, now) = (trace.at(at.0, at.1), stored_reservoir::unpack(hurt.history().words()[i]));
                 assert!((now.w_sum / t.weight - 1.0).abs() < 2.0_f32.powi(-16) && t.verdict == Verdict::Empty);
                 pixels += 1;
             } else {
@@ -63,14 +63,14 @@ fn h17_h18_broken_candidates_leave_the_reservoir_as_it_was_and_are_counted() {
     for index in 0..5 {
         one(&mut post, index, &still(noise(SIZE, "sound")));
     }
-    let before: Vec<_> = post.history().words().iter().map(|&w| pack::unpack(w)).collect();
+    let before: Vec<_> = post.history().words().iter().map(|&w| stored_reservoir::unpack(w)).collect();
     for (index, bad) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY].into_iter().enumerate() {
         let broken = still(Image::filled(SIZE, [0.5, bad, 0.5]));
         let (_, stats, trace) = one(&mut post, 5 + index as u64, &broken);
         assert!(trace.pixels().iter().all(|t| t.weight == 0.0 && !t.is_replaced));
         assert!(stats.warnings().any(|w| w == Warning::NonfiniteColor { pixels: 64 * 48 }));
         for (was, &word) in before.iter().zip(post.history().words()) {
-            let is = pack::unpack(word);
+            let is = stored_reservoir::unpack(word);
             assert_eq!((is.color, is.w_sum, is.age), (was.color, was.w_sum, was.age + index as u32 + 1));
         }
     }

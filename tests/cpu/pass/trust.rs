@@ -3,7 +3,7 @@
 use super::*;
 use crate::reactive::reactive_is_the_inverse_of_trust;
 use crate::settings::{ungated, wrs};
-use afterimage::kernel::pack;
+use afterimage::kernel::stored_reservoir;
 
 /// A mask of columns.
 fn columns(values: &[f32]) -> Image<f32> {
@@ -41,7 +41,7 @@ fn trust_of_1_changes_nothing_and_of_0_is_a_reset_of_that_pixel() {
 fn half_the_trust_is_half_the_weight_before_gate_and_bias() {
     let mut post = context(wrs(Wrs { gate: None, bias: Bias::None, ..Wrs::default() }));
     one(&mut post, 0, &still(noise(SIZE, "a")));
-    let before: Vec<f32> = post.history().words().iter().map(|&w| pack::unpack(w).w_sum).collect();
+    let before: Vec<f32> = post.history().words().iter().map(|&w| stored_reservoir::unpack(w).w_sum).collect();
     let input = View { trust: Some(Image::filled(SIZE, 0.5)), ..still(noise(SIZE, "b")) };
     let (_, _, trace) = one(&mut post, 1, &input);
     for (t, w) in trace.pixels().iter().zip(before) {

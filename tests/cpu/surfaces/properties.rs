@@ -2,7 +2,7 @@
 
 use super::rig::*;
 use afterimage::Verdict;
-use afterimage::kernel::surface::MAX_LOD;
+use afterimage::kernel::lod::MAX_LOD;
 
 /// Coarse, moving, partly distrusted frames, as engines may deliver. Motion in quarters of a pixel, constant over large
 /// areas.

@@ -1,10 +1,12 @@
 //! Storage of a surface in two words.
 
 use super::rig::*;
+use afterimage::kernel::lod::MAX_LOD;
 use afterimage::kernel::noise::unpack_noise;
-use afterimage::kernel::pack::{disparity_value, unpack};
+use afterimage::kernel::pack::disparity_value;
+use afterimage::kernel::stored_reservoir::unpack;
 use afterimage::kernel::stored_sample::{StoredSample, pack_stored, unpack_stored};
-use afterimage::kernel::surface::{MAX_LOD, float14_value, mip_texel, pack_surface};
+use afterimage::kernel::surface::{float14_value, mip_texel, pack_surface};
 use glam::{Vec3, Vec4};
 use proptest::prelude::*;
 

@@ -37,7 +37,7 @@ use afterimage::internal::{
     Bias, ContextDesc, Filter, Foveation, Method, MethodKind, Reset, Sampler, Settings, Smr, ViewFrame, Wrs,
 };
 use afterimage::internal::{Sources, method_pass};
-use afterimage::kernel::pack;
+use afterimage::kernel::{pack, stored_reservoir};
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{self, Device, Limits, Queue, Texture, TextureFormat, TextureUsages};
 use afterimage::{

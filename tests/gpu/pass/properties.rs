@@ -63,7 +63,7 @@ fn a_history_of_any_bits_shows_numbers_and_heals_in_a_frame() {
                 prop_assert!(made.shown.iter().flatten().all(is_half), "{:?}", settings);
                 // Every pixel holds a sample again.
                 let healed = made.words.iter().all(|&w| match settings.method {
-                    Method::Wrs(_) => pack::unpack(w).w_sum > 0.0,
+                    Method::Wrs(_) => stored_reservoir::unpack(w).w_sum > 0.0,
                     _ => unpack_surface([w[0], w[1]]).lod >= 0.0,
                 });
                 prop_assert!(healed, "{:?}, frame {}", settings, index);

@@ -173,7 +173,7 @@ fn a_wrong_pass_is_caught() {
         ("source.previous.at -= frame.views[view].jitter_px;", ""),
         (".usable && !surface.is_silhouette;", ".usable;"),
         ("select(own, farthest_disparity, thin)", "own"),
-        ("candidate.fit = min(fit_sum * known, own_fits);", "candidate.fit = fit_sum * known;"),
+        ("candidate.fit = min(mean.fit, own_fits);", "candidate.fit = mean.fit;"),
         ("sampled.usable && is_shaded(mask_at(at, view), at)", "sampled.usable"),
     ];
     rig::all_caught_in(passes, desc(), settings, FRAMES, &planted, |index, rig| {

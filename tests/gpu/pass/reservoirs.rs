@@ -23,8 +23,8 @@ fn sum_after(rig: &mut Rig, words: &[[u32; 3]], start: f32, frames: u64) -> [f32
     let mut sums = [0.0, start];
     for index in 1..=frames {
         let words = rig.both(index, Reset::None, &[plain(size, 0.5)]).0.words;
-        sums = [sums[1], pack::unpack(words[5]).w_sum];
-        assert!(sums[1].is_finite() && sums[1] <= pack::MAX_W_SUM);
+        sums = [sums[1], stored_reservoir::unpack(words[5]).w_sum];
+        assert!(sums[1].is_finite() && sums[1] <= stored_reservoir::MAX_W_SUM);
     }
     println!("from {start}: {} after {frames} frames", sums[1]);
     sums
@@ -38,8 +38,8 @@ fn h05_h06_a_plain_sum_goes_on_where_a_half_stalls_and_never_overflows() {
     assert_eq!(sum_after(&mut rig, &words, 2040.0, 20), [2059.0, 2060.0], "a half stalls at 2048");
     let [_, here] = sum_after(&mut rig, &words, 65_504.0, 40);
     assert_eq!(here, 65_536.0);
-    let [_, top] = sum_after(&mut rig, &words, pack::MAX_W_SUM, 5);
-    assert_eq!(top, pack::MAX_W_SUM);
+    let [_, top] = sum_after(&mut rig, &words, stored_reservoir::MAX_W_SUM, 5);
+    assert_eq!(top, stored_reservoir::MAX_W_SUM);
     holds!("H05", Gpu, "from 65504 on to {here}, where replacement is 1/65537; 2^100 stays");
     holds!("H06", Gpu, "past 2048 in ones, stalls at {here}");
 }
@@ -53,7 +53,7 @@ fn h07_biased_sums_stall_where_documented() {
     let [before, stalled] = sum_after(&mut rig, &words, 255.0, 400);
     assert!((256.0..=363.0).contains(&stalled) && before == stalled, "{before} {stalled}");
     assert!(sum_after(&mut rig, &words, 100.0, 20)[1] > 100.0, "below the stall it grows");
-    for start in [1e6, pack::MAX_W_SUM] {
+    for start in [1e6, stored_reservoir::MAX_W_SUM] {
         assert_eq!(sum_after(&mut rig, &words, start, 20)[1], start, "above the stall it stays");
     }
     holds!("H07", Gpu, "stalls at {stalled}: replacement 1/{:.0} a frame, stated floor 1/364", stalled);

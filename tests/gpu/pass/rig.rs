@@ -7,7 +7,7 @@ use afterimage::gpu::{Afterimage, DebugTarget, Frame, Region, Target, Textures};
 use afterimage::internal::{ContextDesc, Filter, Reset, Settings};
 use afterimage::internal::{Sources, method_pass};
 use afterimage::kernel::debug_view::PixelTrace;
-use afterimage::kernel::pack;
+use afterimage::kernel::{pack, stored_reservoir};
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{self, Buffer, BufferUsages, Device, Queue, Texture, TextureFormat, TextureUsages};
 use afterimage::{DebugView, DepthConvention, Exposure, FrameStats, Image};
@@ -631,7 +631,10 @@ pub fn make_layers(
 
 /// Packed reservoirs with another weight sum.
 pub fn with_w_sum(words: &[[u32; 3]], w_sum: f32) -> Vec<[u32; 3]> {
-    words.iter().map(|&w| pack::pack(pack::Stored { w_sum, ..pack::unpack(w) })).collect()
+    words
+        .iter()
+        .map(|&w| stored_reservoir::pack(stored_reservoir::Stored { w_sum, ..stored_reservoir::unpack(w) }))
+        .collect()
 }
 
 /// Colors that are noise, moving by whole and half pixels, over two depths.

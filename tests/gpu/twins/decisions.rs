@@ -4,7 +4,7 @@ use super::state::draw;
 use super::*;
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::wrs::{BiasCode, Decision, GateCode, Past, SamplerCode, WrsParams};
-use afterimage::kernel::{color, debug_view, pack, wrs};
+use afterimage::kernel::{color, debug_view, pack, stored_reservoir, wrs};
 use afterimage::{DebugView, Verdict};
 
 /// A stored color and a candidate like it, unlike it, or equal to it.
@@ -19,7 +19,7 @@ fn color_pair(d: &mut Draws) -> [f32; 6] {
 fn step_rows(rows: Rows) -> Rows {
     let color = floats(&[0.0, 0.5, 1.0, 65504.0, -0.01]);
     // Sanitized and unpacked weights: 0, or from the smallest normal number to 2^100.
-    let sums: Vec<u32> = normal().into_iter().filter(|&x| f32::from_bits(x) <= pack::MAX_W_SUM).collect();
+    let sums: Vec<u32> = normal().into_iter().filter(|&x| f32::from_bits(x) <= stored_reservoir::MAX_W_SUM).collect();
     let keys = floats(&[0.0, -1e-8, -1.0, -50.0, -1e30, f32::MIN]);
     let codes: [&[u32]; 3] = [&[0, 1], &[0, 1, 2], &[0, 1, 2]];
     let mut lists: Vec<&[u32]> = codes.to_vec();
@@ -84,7 +84,7 @@ pub const PROBES: &[Probe] = &[
                 .random(|d, row| {
                     row.extend([scaled(d, -10, 10), signed(d, -10, 10) | 1 << 31, range(d, 0.0, 1.0), d.bits() & 1]);
                 })
-                .within(|r| r.f(0) <= pack::MAX_W_SUM)
+                .within(|r| r.f(0) <= stored_reservoir::MAX_W_SUM)
         }
     ),
     probe!(color::expose, |rows| {

@@ -2,7 +2,7 @@
 
 use super::*;
 use afterimage::kernel::depth::{DisparityMap, INVALID_DISPARITY};
-use afterimage::kernel::{acuity, approx, color, depth, lens};
+use afterimage::kernel::{acuity, approx, color, depth, lab, lens};
 
 fn one(rows: Rows, table: &[u32], random: fn(&mut Draws) -> u32) -> Rows {
     rows.cross(&[table]).random(|d, row| row.push(random(d)))
@@ -65,14 +65,14 @@ pub const PROBES: &[Probe] = &[
             .random_of("any", |d, row| row.push(signed(d, -100, 17)))
             .within(|r| r.f(0).abs() < 1e9)
     }),
-    probe!(color::lab, |rows| {
+    probe!(lab::lab, |rows| {
         // Greys put the luminance at the threshold (H33).
         let greys: Vec<u32> = (-40..40).map(|k: i32| (216.0_f32 / 24389.0).to_bits().wrapping_add_signed(k)).collect();
         let mut rows = rows.mixed(&[&finite(), &finite(), &finite()]);
         rows.words.extend(greys.iter().flat_map(|&g| [g; 3]));
         rows.each(&[F(-0.1, 1.2); 3]).random_of("wide", |d, row| row.extend((0..3).map(|_| signed(d, -20, 17))))
     }),
-    probe!(color::delta_e94, |rows| {
+    probe!(lab::delta_e94, |rows| {
         let axis = floats(&[0.0, -0.0, 50.0, -50.0, 1e-4, 4000.0, 100.0]);
         rows.cross(&[&axis, &axis, &axis, &axis, &axis, &axis]).each(&[F(-120.0, 120.0); 6]).random_of(
             "same hue",

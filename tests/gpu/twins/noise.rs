@@ -1,9 +1,9 @@
-//! Functions of noisy candidates: noise.
+//! Functions of noisy candidates: noise, mip_noise.
 
 use super::matching::{channels, push};
 use super::*;
-use afterimage::kernel::noise;
 use afterimage::kernel::noise::Noise;
+use afterimage::kernel::{mip_noise, noise};
 
 /// Samples and variance, as stored or from a frame's input.
 fn noise(d: &mut Draws) -> [f32; 2] {
@@ -67,14 +67,14 @@ pub const PROBES: &[Probe] = &[
         rows.cross(&[&counts(), &variances()]).each(&[Of(|d, row| push(row, &noise(d)))])
     }),
     probe!(noise::unpack_noise, |rows| rows.cross(&[&words()]).each(&[Bits])),
-    probe!(noise::candidate_texel, |rows| {
+    probe!(mip_noise::candidate_texel, |rows| {
         let (c, n, v) = (channels(), counts(), variances());
         rows.mixed(&[&c, &c, &c, &[0, 1], &n, &v])
     }),
-    probe!(noise::candidate_mean, |rows| texel_rows(rows, 0)),
-    probe!(noise::candidate_bilinear, |rows| texel_rows(rows, 2)),
+    probe!(mip_noise::candidate_mean, |rows| texel_rows(rows, 0)),
+    probe!(mip_noise::candidate_bilinear, |rows| texel_rows(rows, 2)),
     probe!(noise::history_share, |rows| pair_rows(rows, &[&floats(&[0.0, 0.5, 0.9, 0.98])])),
-    probe!(noise::noise_difference, |rows| pair_rows(rows, &[&channels(), &floats(&[0.01, 0.7, 1.0, 8192.0])])),
+    probe!(mip_noise::noise_difference, |rows| pair_rows(rows, &[&channels(), &floats(&[0.01, 0.7, 1.0, 8192.0])])),
     probe!(noise::expected_noise, |rows| pair_rows(rows, &[&channels()])),
     probe!(noise::noise_need, |rows| {
         rows.cross(&[&counts(), &variances(), &channels()]).random(|d, row| {
@@ -94,7 +94,7 @@ pub const PROBES: &[Probe] = &[
             push(row, &[1.0 + (d.bits() % 99) as f32, d.range(0.0, 0.02), d.range(0.0, 2.0)]);
         })
     }),
-    probe!(noise::discount_coarser, |rows| pair_rows(rows, &[&floats(&[-3.0, -0.1, 0.0, 0.1, 0.25, 1.0, 8.0])])),
+    probe!(mip_noise::discount_coarser, |rows| pair_rows(rows, &[&floats(&[-3.0, -0.1, 0.0, 0.1, 0.25, 1.0, 8.0])])),
     probe!(noise::noisy_share, |rows| rows.cross(&[&counts(), &floats(&[0.0, 1.0, 2.0, 13.0, 450.0])])),
     probe!(noise::borrowed, |rows| {
         rows.random(|d, row| {
@@ -103,7 +103,7 @@ pub const PROBES: &[Probe] = &[
             push(row, &[d.range(0.0, 2.0)]);
         })
     }),
-    probe!(noise::sample_difference, |rows| rows.cross(&[&counts(), &variances(), &channels()])),
+    probe!(mip_noise::sample_difference, |rows| rows.cross(&[&counts(), &variances(), &channels()])),
     probe!(noise::noise_after, |rows| {
         let share = floats(&[0.0, 0.5, 0.9, 0.98, 1.0]);
         pair_rows(rows, &[&share, &floats(&[0.0, 0.3, 1.0])])

@@ -1,10 +1,10 @@
-//! Reconstruction of planned frames: stored_sample, sparse_smr.
+//! Reconstruction of planned frames: stored_sample, sparse_smr, candidate.
 
 use super::*;
 use afterimage::kernel::noise::Noise;
 use afterimage::kernel::sparse_smr::Reconstruction;
 use afterimage::kernel::stored_sample::Around;
-use afterimage::kernel::{sparse_smr, stored_sample};
+use afterimage::kernel::{antialias, candidate, sparse_smr, stored_sample};
 
 shape!(stored_sample::StoredSample { color: Vec3, lod: f32, disparity: f32, place_px: Vec2 });
 shape!(Around {
@@ -59,6 +59,21 @@ shape!(sparse_smr::Reconstructed {
     keeps_nearest: bool,
     stored_share: f32
 });
+shape!(candidate::SampleSums {
+    color: Vec3,
+    alpha: f32,
+    weight: f32,
+    gain as "gains": Vec3,
+    fit: f32,
+    known: f32,
+    lowest: Vec3,
+    highest: Vec3,
+    beside: Vec3,
+    nearest_px2: f32
+});
+shape!(candidate::SampleMean { color: Vec3, alpha: f32, lod: f32, gain as "gains": Vec3, fit: f32 });
+shape!(candidate::NoisySums { sum: Vec4, weight: f32 });
+shape!(candidate::Borrowed { color: Vec3, noise: Noise });
 shape!(sparse_smr::Accumulated { result: sparse_smr::Reconstructed, noise: Noise });
 
 pub(super) fn color(d: &mut Draws) -> [u32; 3] {
@@ -199,7 +214,56 @@ pub const PROBES: &[Probe] = &[
         ),
         around_rows
     ),
-    probe!(sparse_smr::candidate_level, |rows| rows.each(&[F(0.0, 200.0), F(0.0, 8.0)])),
+    probe!(candidate::sample_codes, |rows| rows.each(&[Scaled(-34, 34)])),
+    probe!(candidate::distance_weight, |rows| rows.each(&[F(0.0, 300.0)])),
+    probe!(candidate::sample_weight, |rows| rows.each(&[F(0.0, 300.0), N(2)])),
+    probe!(candidate::no_samples, |_: u32| candidate::no_samples(), "no_samples()", |rows| rows.each(&[N(2)])),
+    probe!(candidate::add_sample, |rows| rows.random(|d, row| {
+        push_sums(d, row);
+        row.extend(color(d));
+        row.push(range(d, 0.0, 1.0));
+        row.extend([0; 3].map(|_| range(d, 0.2, 5.0)));
+        row.extend([range(d, 0.0, 1.0), range(d, 0.0, 1.0), d.bits() % 2]);
+        row.extend([range(d, 0.0, 1.0), range(d, 0.0, 300.0), d.bits() % 2]);
+    })),
+    probe!(candidate::has_surface, |rows| rows.random(push_sums)),
+    probe!(candidate::is_beside, |rows| rows.random(push_sums)),
+    probe!(candidate::sample_mean, |rows| rows.each(&[Of(push_sums), F(0.0, 8.0)])),
+    probe!(candidate::add_noisy, |rows| {
+        rows.each(&[COLOR, F(0.0, 4.0), F(0.0, 64.0), COLOR, F(1.0, 64.0), F(0.0, 2.0), F(0.0, 300.0)])
+    }),
+    probe!(candidate::noisy_mean, |rows| rows.each(&[COLOR, F(0.0, 4.0), F(0.01, 64.0)])),
+    probe!(candidate::borrow_around, |rows| {
+        rows.each(&[COLOR, F(1.0, 64.0), F(0.0, 2.0), COLOR, F(0.0, 2.0), F(0.0, 4096.0)])
+    }),
+    probe!(candidate::candidate_level, |rows| rows.each(&[F(0.0, 200.0), F(0.0, 8.0)])),
+    probe!(sparse_smr::no_observation, |_: u32| sparse_smr::no_observation(), "no_observation()", |rows| rows
+        .each(&[N(2)])),
+    probe!(sparse_smr::none_around, |_: u32| sparse_smr::none_around(), "none_around()", |rows| rows.each(&[N(2)])),
+    probe!(sparse_smr::pack_observation, |rows| rows.random(push_observation)),
+    probe!(sparse_smr::unpack_observation, |rows| rows.each(&[Bits, Bits, COLOR])),
+    probe!(sparse_smr::is_observed, |rows| rows.each(&[Bits, Bits])),
+    probe!(sparse_smr::mean_observation, |rows| {
+        rows.random(|d, row| {
+            push_light(d, row);
+            // Without any, and of a few.
+            row[8] = [0.0_f32, 1.0, 2.0, 3.0, 4.0][d.bits() as usize % 5].to_bits();
+            row.push(range(d, 0.0, 4.0));
+        })
+    }),
+    probe!(sparse_smr::spatial_weight, |rows| rows.each(&[F(0.0, 128.0), F(1.0, 128.0)])),
+    probe!(sparse_smr::neighbour_weight, |rows| rows.random(|d, row| {
+        push_observation(d, row);
+        if d.bits().is_multiple_of(2) {
+            row[6] = (-1.0_f32).to_bits();
+        }
+        push_observation(d, row);
+        row.push(range(d, 0.0, 1.0));
+    })),
+    probe!(sparse_smr::gain_helps, |rows| rows.each(&[F(0.0, 60.0), F(0.0, 60.0)])),
+    probe!(sparse_smr::noisy_fit_around, |rows| rows.each(&[Of(push_light), F(0.0, 60.0)])),
+    probe!(antialias::add_scatter, |rows| rows.each(&[F(0.0, 1000.0), Of(push_observation), F(0.0, 4.0)])),
+    probe!(stored_sample::has_moved, |rows| rows.each(&[F(-0.1, 0.1), F(-0.1, 0.1), F(-0.1, 0.1), F(-0.1, 0.1)])),
     probe!(sparse_smr::expected_error, |rows| rows.each(&[F(0.0, 3.0), F(0.0, 100.0), N(2)])),
     probe!(sparse_smr::worn, |rows| rows.cross(&[&[0, 1], &[0, 1]])),
     probe!(sparse_smr::pack_known, |rows| rows.each(&[F(0.0, 1.0), F(0.0, 80.0)])),
@@ -248,6 +312,18 @@ pub const PROBES: &[Probe] = &[
         })
     ),
 ];
+
+/// Sums over samples around a pixel, the nearest of which is often beside it, or missing.
+fn push_sums(d: &mut Draws, row: &mut Vec<u32>) {
+    let weight = range(d, 0.001, 4.0);
+    row.extend(color(d).map(|v| times(v, weight)));
+    row.extend([times(weight, range(d, 0.0, 1.0)), weight]);
+    let known = range(d, 1e-6, 4.0);
+    row.extend([0; 3].map(|_| times(known, range(d, 0.2, 5.0))));
+    row.extend([times(known, range(d, 0.0, 1.0)), known]);
+    row.extend([color(d), color(d), color(d)].concat());
+    row.push([range(d, 0.0, 4.0), 2.0_f32.to_bits(), range(d, 0.0, 300.0), 1e30_f32.to_bits()][d.bits() as usize % 4]);
+}
 
 /// Twelve words of sums over neighbours, whose means are often close to each other.
 pub(super) fn push_light(d: &mut Draws, row: &mut Vec<u32>) {

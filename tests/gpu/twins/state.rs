@@ -1,11 +1,11 @@
 //! Functions of bits and reservoirs: sanitize, rng, pack, reproject, reservoir.
 
 use super::*;
-use afterimage::kernel::pack::Stored;
 use afterimage::kernel::reproject::{Verdict, ViewMotion};
 use afterimage::kernel::reservoir::Reservoir;
 use afterimage::kernel::rng::Purpose;
-use afterimage::kernel::{pack, reproject, reservoir, rng, sanitize};
+use afterimage::kernel::stored_reservoir::Stored;
+use afterimage::kernel::{pack, reproject, reservoir, rng, sanitize, stored_reservoir};
 
 code!(Purpose: Select, Key, Path);
 shape!(Stored { color: Vec3, disparity: f32, w_sum: f32, age: u32 });
@@ -53,15 +53,15 @@ pub const PROBES: &[Probe] = &[
             .random_of("range", |d, row| row.push(scaled(d, -34, 34)))
     }),
     probe!(pack::disparity_value, |rows| rows.cross(&[&(0..65536).collect::<Vec<_>>()])),
-    probe!(pack::pack, |rows| {
-        let sums = [finite(), vec![0x7f80_0000, 0xff80_0000], around(&[pack::MAX_W_SUM])].concat();
+    probe!(stored_reservoir::pack, |rows| {
+        let sums = [finite(), vec![0x7f80_0000, 0xff80_0000], around(&[stored_reservoir::MAX_W_SUM])].concat();
         let disparities = [positive(), floats(&[-1.0])].concat();
         rows.mixed(&[&finite(), &finite(), &finite(), &disparities, &sums, &words()])
             .each(&[&[Signed(-26, 17); 3][..], &[Scaled(-34, 34), Scaled(-126, 102), N(300)]].concat())
     }),
-    probe!(pack::unpack, |rows| {
+    probe!(stored_reservoir::unpack, |rows| {
         rows.mixed(&[&any(), &any(), &any()]).each(&[Bits; 3]).random_of("sound", |d, row| {
-            row.extend(pack::pack(Stored {
+            row.extend(stored_reservoir::pack(Stored {
                 color: Vec3::from_array([0; 3].map(|_| f32::from_bits(signed(d, -20, 15)))),
                 disparity: f32::from_bits(scaled(d, -34, 34)),
                 w_sum: f32::from_bits(scaled(d, -126, 100)),
@@ -146,7 +146,7 @@ pub const PROBES: &[Probe] = &[
         rows.cross(&[&normal(), &normal()])
             .random_of("bernoulli", |d, row| row.extend([scaled(d, -20, 20), scaled(d, -20, 20)]))
             // Sums are at most 2^100, so that none overflows; quotients below the normal range are another matter.
-            .within(|r| r.f(0) <= pack::MAX_W_SUM && r.f(1) <= pack::MAX_W_SUM)
+            .within(|r| r.f(0) <= stored_reservoir::MAX_W_SUM && r.f(1) <= stored_reservoir::MAX_W_SUM)
     }),
     probe!(reservoir::exponential_survival, |rows| rows
         .cross(&[&finite()])

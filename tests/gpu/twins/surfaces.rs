@@ -2,11 +2,13 @@
 
 use super::matching::{channels, like, push, stored_color};
 use super::*;
-use afterimage::kernel::resample;
+use afterimage::kernel::lod;
+use afterimage::kernel::lod::MAX_LOD;
 use afterimage::kernel::resample::{Resampled, Tap, TapsAround};
 use afterimage::kernel::resize;
 use afterimage::kernel::surface;
-use afterimage::kernel::surface::{MAX_LOD, Surface};
+use afterimage::kernel::surface::Surface;
+use afterimage::kernel::{pack, resample};
 
 shape!(Surface { color: Vec3, lod: f32, disparity: f32 });
 shape!(Tap { color: Vec3, lod: f32, same: bool });
@@ -77,8 +79,9 @@ pub const PROBES: &[Probe] = &[
         let x = finite();
         rows.mixed(&[&x, &x, &x, &x]).each(&[Signed(-26, 17); 4])
     }),
+    probe!(lod::lod_value, |rows| rows.cross(&[&(0..256).collect::<Vec<u32>>()])),
     probe!(resample::taps_around, around_rows),
-    probe!(resample::tap_codes_between, |rows| {
+    probe!(pack::tap_codes_between, |rows| {
         let disparities = [positive(), floats(&[-1.0, 0.0])].concat();
         let rows = rows.cross(&[&disparities, &disparities]);
         rows.each(&[Scaled(-34, 34), Scaled(-34, 34)])

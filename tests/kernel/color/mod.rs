@@ -3,9 +3,9 @@
 mod difference;
 mod gate;
 
-use afterimage::kernel::color;
 use afterimage::kernel::wrs;
 use afterimage::kernel::wrs::GateCode;
+use afterimage::kernel::{color, lab};
 use afterimage_testing::Draws;
 use approx::assert_abs_diff_eq;
 use glam::{DVec3, Vec3};

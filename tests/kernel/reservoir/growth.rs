@@ -14,7 +14,7 @@ fn recur_half(a: f32, w: f32) -> f32 {
 
 /// A weight sum as it is stored.
 fn keep(w_sum: f32) -> f32 {
-    pack::unpack(pack::pack(stored(w_sum, 0))).w_sum
+    stored_reservoir::unpack(stored_reservoir::pack(stored(w_sum, 0))).w_sum
 }
 
 /// Fixed point of `next`, starting with `a` in the first frame, and the frame that reaches it.
@@ -34,8 +34,8 @@ fn h05_weight_sums_saturate() {
     assert!(half(f32::MAX).is_finite());
     // Stored weight sums have a larger range: nothing happens at 65504, and they saturate at their own limit.
     assert_eq!(keep(65504.0 + 1.0), 65505.0);
-    assert_eq!(keep(pack::MAX_W_SUM + 1.0), pack::MAX_W_SUM);
-    assert_eq!([f32::MAX, f32::INFINITY].map(keep), [pack::MAX_W_SUM; 2]);
+    assert_eq!(keep(stored_reservoir::MAX_W_SUM + 1.0), stored_reservoir::MAX_W_SUM);
+    assert_eq!([f32::MAX, f32::INFINITY].map(keep), [stored_reservoir::MAX_W_SUM; 2]);
     let (top, _) = stall(65504.0, |a| keep(a + 1.0));
     assert_eq!(top, 65536.0);
     // The floor: a candidate of weight 1 is still taken by the draws below it.

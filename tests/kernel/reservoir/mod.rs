@@ -6,12 +6,12 @@ mod properties;
 mod storage;
 mod weighted;
 
-use afterimage::kernel::pack;
-use afterimage::kernel::pack::Stored;
-use afterimage::kernel::reservoir;
 use afterimage::kernel::reservoir::Reservoir;
+use afterimage::kernel::stored_reservoir;
+use afterimage::kernel::stored_reservoir::Stored;
 use afterimage::kernel::wrs;
 use afterimage::kernel::wrs::{BiasCode, GateCode, Past, SamplerCode, WrsParams};
+use afterimage::kernel::{pack, reservoir};
 use afterimage_testing::{Draws, accept, p_of_counts, p_of_rate, reject};
 use glam::Vec3;
 use proptest::prelude::*;

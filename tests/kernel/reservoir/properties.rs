@@ -71,7 +71,7 @@ proptest! {
         let [weight, trust, key] = others.map(f32::from_bits);
         let (candidate, usable) = sanitize::color(Vec3::from(color.map(f32::from_bits)));
         let weight = if usable { sanitize::weight(weight).min(1.0) } else { 0.0 };
-        let history = pack::unpack(words);
+        let history = stored_reservoir::unpack(words);
         let past = Past { color: history.color, w_sum: history.w_sum, log_key: key };
         let past = wrs::scale_by_trust(past, trust, params.sampler);
         prop_assert!(past.w_sum >= 0.0 && past.w_sum <= history.w_sum);
@@ -79,7 +79,7 @@ proptest! {
         prop_assert!(d.w_sum.is_finite() && d.w_sum >= 0.0 && d.log_key.is_finite() && d.log_key <= 0.0);
         prop_assert!((0.0..=1.0).contains(&d.gate) && (0.0..=1.0).contains(&d.survival));
         let shown = if d.take { candidate } else { past.color };
-        let next = pack::unpack(pack::pack(Stored { color: shown, disparity: history.disparity, w_sum: d.w_sum, age: 1 }));
+        let next = stored_reservoir::unpack(stored_reservoir::pack(Stored { color: shown, disparity: history.disparity, w_sum: d.w_sum, age: 1 }));
         prop_assert!(shown.is_finite() && next.color.is_finite() && next.w_sum.is_finite() && next.w_sum >= 0.0);
     }
 }

@@ -45,17 +45,17 @@ proptest! {
 
     #[test]
     fn h19_any_words_unpack_to_something_finite(words in any::<[u32; 3]>()) {
-        let s = pack::unpack(words);
+        let s = stored_reservoir::unpack(words);
         prop_assert!(s.color.is_finite() && s.w_sum.is_finite() && s.w_sum >= 0.0 && s.disparity.is_finite());
         prop_assert!(s.color.abs().max_element() <= 65504.0 && s.age <= 255);
         // Packing an unpacked reservoir gives the same words.
-        let again = pack::unpack(pack::pack(s));
+        let again = stored_reservoir::unpack(stored_reservoir::pack(s));
         prop_assert_eq!(again, s);
     }
 
     #[test]
     fn storage_is_as_precise_as_stated(w in 1e-20f32..1e20, d in 1e-9f32..1e9, age in 0u32..256, c in -65504f32..65504.) {
-        let s = pack::unpack(pack::pack(Stored { color: Vec3::splat(c), disparity: d, w_sum: w, age }));
+        let s = stored_reservoir::unpack(stored_reservoir::pack(Stored { color: Vec3::splat(c), disparity: d, w_sum: w, age }));
         prop_assert!((s.w_sum / w - 1.0).abs() <= 2.0_f32.powi(-16));
         prop_assert!((s.disparity / d - 1.0).abs() <= 2.0_f32.powi(-11));
         prop_assert!((s.color.x - c).abs() <= (c.abs() * 2.0_f32.powi(-11)).max(2.0_f32.powi(-25)));

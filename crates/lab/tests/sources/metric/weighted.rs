@@ -2,7 +2,8 @@
 
 use super::{noise, score, source_frame};
 use afterimage::Image;
-use afterimage::kernel::color::{delta_e94, lab, srgb_decode};
+use afterimage::kernel::color::srgb_decode;
+use afterimage::kernel::lab::{delta_e94, lab};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::{GHOST_FRAMES, Scores, error_weight};
 use afterimage_testing::Draws;

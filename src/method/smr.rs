@@ -1,12 +1,12 @@
 //! Scale-matched reservoirs.
 
+use super::{Algorithm, Entry, HistoryLayout, PassShader, Stage};
 use crate::foveation::Filter;
-use crate::kernel::noise::NOISY_LEVELS;
+use crate::kernel::mip_noise::NOISY_LEVELS;
 use crate::kernel::smr::SmrParams;
-use crate::method::{Algorithm, Entry, HistoryLayout, PassShader, Stage};
 use crate::settings::Settings;
 
-pub(crate) static ENTRY: Entry = Entry {
+pub(super) static ENTRY: Entry = Entry {
     name: "smr",
     summary: "scale-matched reservoirs",
     algorithm: Algorithm::Smr,

@@ -1,8 +1,8 @@
 //! Temporal antialiasing of the foveated frame.
 
-use crate::method::{Algorithm, Entry, HistoryLayout, PassShader, whole_frames};
+use super::{Algorithm, Entry, HistoryLayout, PassShader, whole_frames};
 
-pub(crate) static ENTRY: Entry = Entry {
+pub(super) static ENTRY: Entry = Entry {
     name: "taa",
     summary: "temporal antialiasing of the foveated frame",
     algorithm: Algorithm::Taa,

@@ -1,9 +1,9 @@
 //! Temporal upsampling.
 
+use super::{Algorithm, Entry, HistoryLayout, PassShader, Stage};
 use crate::foveation::Filter;
-use crate::method::{Algorithm, Entry, HistoryLayout, PassShader, Stage};
 
-pub(crate) static ENTRY: Entry = Entry {
+pub(super) static ENTRY: Entry = Entry {
     name: "taau",
     summary: "temporal upsampling of planned frames",
     algorithm: Algorithm::Taau,

@@ -1,8 +1,8 @@
 //! No method: the sanitized foveated frame.
 
-use crate::method::{Algorithm, Entry, HistoryLayout, PassShader, whole_frames};
+use super::{Algorithm, Entry, HistoryLayout, PassShader, whole_frames};
 
-pub(crate) static ENTRY: Entry = Entry {
+pub(super) static ENTRY: Entry = Entry {
     name: "none",
     summary: "the foveated frame alone",
     algorithm: Algorithm::None,

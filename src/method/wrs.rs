@@ -1,13 +1,13 @@
 //! Weighted reservoirs.
 
+use super::{Algorithm, Entry, HistoryLayout, PassShader, whole_frames};
 use crate::foveation::Filter;
 use crate::kernel::acuity;
 use crate::kernel::reservoir;
 use crate::kernel::wrs::{BiasCode, GateCode, SamplerCode, WrsParams};
-use crate::method::{Algorithm, Entry, HistoryLayout, PassShader, whole_frames};
 use crate::settings::{Bias, GateMetric, GateScale, Sampler, Settings};
 
-pub(crate) static ENTRY: Entry = Entry {
+pub(super) static ENTRY: Entry = Entry {
     name: "wrs",
     summary: "weighted reservoirs: A-Chao with Bernoulli bias",
     algorithm: Algorithm::Wrs,
