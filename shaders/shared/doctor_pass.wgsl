@@ -7,7 +7,7 @@
 // Evidence on the inputs of a view: the words of its tiles. CPU twin: words in src/cpu/doctor_pass.rs. One workgroup a
 // tile, one invocation for 2x2 pixels. Words are sums of integers, so that their order does not matter.
 //
-// 416 reads of roots and 68 of color an invocation, 112 of roots more for distances, most of them cached; 244 bytes
+// 416 reads of roots and 68 of color an invocation, 128 of roots more for distances, most of them cached; 244 bytes
 // written a tile.
 
 override HAS_DEPTH: u32 = 1u;

@@ -112,12 +112,12 @@ fn by_parallax(
     if let Some(why) = why {
         return Some(Finding { evidence, ..Finding::cannot_tell(Check::Depth, why) });
     }
-    let line = nearer(desc, stated, 1.0 / scale, door);
+    let line = scaled_distances(desc, stated, 1.0 / scale, door);
     Some(Finding::wrong(Check::Depth, Fault::DepthPlanes, confidence, evidence, line))
 }
 
 /// Line that multiplies all distances by `factor`.
-fn nearer(desc: &ContextDesc, stated: Shape, factor: f64, door: Door) -> String {
+fn scaled_distances(desc: &ContextDesc, stated: Shape, factor: f64, door: Door) -> String {
     match desc.depth {
         DepthConvention::Forward { near, .. } | DepthConvention::Reversed { near, .. } => {
             door.depth(stated, Some(f64::from(near) * factor))
@@ -172,7 +172,7 @@ fn by_pictures(
     if better(found, AS_STATED) < WRONG {
         return None;
     }
-    let line = nearer(desc, stated, factor, door);
+    let line = scaled_distances(desc, stated, factor, door);
     Some(Finding::wrong(Check::Depth, Fault::DepthPlanes, confidence, evidence, line))
 }
 

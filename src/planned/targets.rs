@@ -9,7 +9,8 @@ use wgpu::{
 };
 
 /// Textures of planned frames with the usages that the passes need, and render passes that draw them: for renderers
-/// that have no such textures yet. Those that have pass their own to [`Afterimage`] instead.
+/// that have no such textures yet. Those that have pass their own to [`Afterimage`] instead. Distances, noise and
+/// albedo need textures of their own: `Frame { albedo: Some(&albedo), ..targets.frame(camera) }`.
 ///
 /// A frame has these steps:
 ///

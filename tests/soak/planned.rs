@@ -11,8 +11,8 @@ const SIZE: [u32; 2] = [36, 24];
 /// The brightest color that is drawn, and the darkest, in broken pixels.
 const BRIGHTEST: f32 = 1.0;
 const DARKEST: f32 = -1.0;
-/// Largest gain of history that follows a change of light.
-const GAIN: f32 = 16.0;
+/// Largest gain of history that follows a change of light, `SAMPLE_GAIN` of the kernel.
+const GAIN: f32 = 5.0;
 
 /// Findings of a soak test.
 #[derive(Debug, Default)]
