@@ -43,16 +43,19 @@ remapped="--remap-path-prefix=$home/registry/src= --remap-path-prefix=$target= -
 bindgen=(env -u RUSTC -u LD_LIBRARY_PATH -u RUSTC_BOOTSTRAP CARGO_PROFILE_RELEASE_OPT_LEVEL=1 CARGO_PROFILE_RELEASE_LTO=off
     CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 cargo run --locked --release --package afterimage-web-bindgen --)
 
-# The sources that the page is made of, in a copy whose shaders are compact: without comments, and without those that it
-# never asks for, because it closes no depth buffer, asks no doctor, offers no taau, has no albedo, and opens new contexts
-# instead of resizing them.
+# The sources that the page is made of, in a copy whose shaders are compact: without comments and long names, and without
+# those that it never asks for, because it closes no depth buffer, asks no doctor, offers no taau, has no albedo, and opens
+# new contexts instead of resizing them.
 rm -rf "$copy"
 mkdir -p "$copy/crates/web"
 cp -pr ../../{Cargo.toml,README.md,examples,shaders,src,tests} "$copy"
 cp -pr Cargo.toml Cargo.lock bindgen src shaders "$copy/crates/web"
-shopt -s extglob nullglob
-unused='@(quad_prime_pass|doctor*|resize*|taau*|albedo|quad_albedo_pass|sparse_albedo).wgsl'
-for shader in "$copy"/shaders/@(lib|pass)/$unused; do : >"$shader"; done
+for unused in quad_prime_pass 'doctor*' 'resize*' 'taau*' demodulation quad_albedo_pass sparse_albedo; do
+    for shader in "$copy"/shaders/*/$unused.wgsl; do
+        [ -f "$shader" ] || { echo "no shader $unused.wgsl to leave out: build.sh names an old one" >&2; exit 1; }
+        : >"$shader"
+    done
+done
 find "$copy" -name '*.wgsl' -exec "${bindgen[@]}" compact {} +
 
 mkdir -p "$to"
