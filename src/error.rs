@@ -188,7 +188,7 @@ pub enum FrameError {
         /// Supported buffers.
         expected: &'static str,
     },
-    /// A matrix of the frame is not that of a camera.
+    /// A matrix of the frame is no camera's.
     #[error(transparent)]
     Settings(#[from] SettingsError),
     /// The graphics device was lost. It executes no more work. Recording a frame returns this, except in a

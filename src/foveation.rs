@@ -76,7 +76,7 @@ pub struct Foveation {
     /// Block edge in the periphery, outside the middle region, in pixels: a power of two from `rate_mid` to
     /// [`MAX_RATE`](Self::MAX_RATE). Default 16.
     pub rate_far: u32,
-    /// With [`Filter::Quads`]: share of the pixels that smr shades by need in a frame, beside the fovea and the even
+    /// With [`Filter::Quads`]: share of the pixels that are shaded by need in a frame, beside the fovea and the even
     /// pattern, 0 to 1. With [`noisy`](crate::internal::Settings::noisy) frames it counts paths, of which a pixel may
     /// get several. Default 0.025.
     pub budget: f32,

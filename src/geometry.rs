@@ -141,7 +141,7 @@ impl ViewGeometry {
     /// ```
     ///
     /// # Errors
-    /// [`SettingsError`] if the matrix is not that of a perspective camera: orthographic, left-handed, y down or
+    /// [`SettingsError`] if the matrix is no perspective camera's: orthographic, left-handed, y down or
     /// mirrored (negate the row or column that is flipped), rotated, not finite.
     pub fn from_projection(size_px: [u32; 2], clip_from_view: [[f32; 4]; 4]) -> Result<Self, SettingsError> {
         let Projection { scale, shift, is_oblique } = Projection::of(clip_from_view)?;

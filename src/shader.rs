@@ -47,13 +47,14 @@ pub static MODULES: &[Module] = modules! {
         "resize_reservoirs_pass", "resize_surfaces_pass", "settled_history", "smr_pass", "surface_history", "taa_pass",
         "taau_pass", "wrs_pass", "wrs_pixel", "wrs_quad_pass";
     "lib":
-        "acuity", "antialias", "approx", "candidate", "color", "debug_view", "demodulation", "depth", "doctor", "foveate", "lab",
-        "lattice", "lens", "lod", "mip_noise", "noise", "pack", "quads", "reproject", "resample", "reservoir", "resize",
-        "rng", "sanitize", "smr", "sparse_smr", "stored_reservoir", "stored_sample", "surface", "taa", "taau", "wrs";
+        "acuity", "antialias", "approx", "candidate", "color", "debug_view", "demodulation", "depth", "doctor",
+        "foveate", "lab", "lattice", "lens", "lod", "mip_noise", "noise", "pack", "quads", "reconstruction",
+        "reproject", "resample", "reservoir", "resize", "rng", "sanitize", "smr", "stored_reservoir", "stored_sample",
+        "surface", "taa", "taau", "wrs";
     "planned":
-        "no_albedo", "quad_albedo_pass", "quad_around_pass", "quad_given_pass", "quad_key_pass", "quad_light_pass",
-        "quad_list", "quad_mask_pass", "quad_observe_pass", "quad_octants_pass", "quad_pass", "quad_plan",
-        "quad_prime_pass", "quad_runs", "quad_state", "quad_threshold_pass", "resize_sparse_pass", "sparse_albedo",
+        "no_albedo", "quad_albedo_pass", "quad_around_pass", "quad_given_pass", "quad_key_pass", "quad_list",
+        "quad_mask_pass", "quad_observe_pass", "quad_octants_pass", "quad_pass", "quad_plan", "quad_prime_pass",
+        "quad_rectify_pass", "quad_runs", "quad_state", "quad_threshold_pass", "resize_sparse_pass", "sparse_albedo",
         "sparse_history", "sparse_noise", "sparse_pixel";
     "shared":
         "doctor_pass", "doctor_roots_pass", "each_pixel", "inputs", "origin", "output", "output_and_view", "past_frame",

@@ -89,7 +89,7 @@ impl ViewFrame {
     /// ```
     ///
     /// # Errors
-    /// [`SettingsError`] if a matrix is not that of a perspective camera or is not finite, or if only one view mirrors.
+    /// [`SettingsError`] if a matrix is no perspective camera's or is not finite, or if only one view mirrors.
     pub fn moved<T: Copy + Into<f64> + Debug + PartialEq>(
         self,
         clip_from_view: [[T; 4]; 4],
@@ -148,7 +148,7 @@ impl ViewFrame {
     /// ```
     ///
     /// # Errors
-    /// [`SettingsError`] if the matrix is not that of a perspective camera, has another field of view, or is moved by
+    /// [`SettingsError`] if the matrix is no perspective camera's, has another field of view, or is moved by
     /// more than 16 pixels.
     pub fn jittered(self, jittered_clip_from_view: [[f32; 4]; 4]) -> Result<Self, SettingsError> {
         let jittered = ViewGeometry::from_projection(self.geometry.size_px(), jittered_clip_from_view)?;

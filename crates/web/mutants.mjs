@@ -29,7 +29,7 @@ const MUTANTS = [
     ["scanpath never resumes", "the_scanpath_is_fair_and_goes_on", "gaze.js", "const IDLE_MS = 5000;", "const IDLE_MS = Infinity;"],
     ["a recorded path", "the_scanpath_is_fair_and_goes_on", "index.html", "a synthetic path", "a recorded path"],
     ["scene by the clock", "a_slow_device_moves_by_frames", "main.js", "Math.min((now - before) / 1000, LONGEST_STEP_S)", "(now - before) / 1000"],
-    ["scene without antialiasing", "a_slow_device_moves_by_frames", "afterimage_web_bg.wasm", "const RAYS:u32 = 4u", "const RAYS:u32 = 1u"],
+    ["scene without antialiasing", "a_slow_device_moves_by_frames", "afterimage_web_bg.wasm", "const RAYS:u32=4u", "const RAYS:u32=1u"],
     ["clicks queue", "choices_are_kept_and_do_not_queue", "main.js", "    changed = { ...changed, ...what };", "    jobs.push(() => apply(what));"],
     ["address not written", "choices_are_kept_and_do_not_queue", "address.js", "history.replaceState(", "(() => {})("],
     ["address not read", "choices_are_kept_and_do_not_queue", "main.js", "        read_address();", ""],

@@ -185,7 +185,7 @@ const tests = {
         const script = `
             const make = GPUDevice.prototype.createShaderModule;
             GPUDevice.prototype.createShaderModule = function (descriptor) {
-                return make.call(this, { ...descriptor, code: descriptor.code.replace("(history-r.candidate)*share", "(history-r.candidate)*(share*0.999)") });
+                return make.call(this, { ...descriptor, code: descriptor.code.replace("const ACCUMULATE:f32=0.5;", "const ACCUMULATE:f32=0.499;") });
             };`;
         const page = await open({ script });
         const [different, values] = await page.compare();

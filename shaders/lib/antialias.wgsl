@@ -1,5 +1,5 @@
 //#use stored_sample
-//#use sparse_smr
+//#use reconstruction
 //#use approx
 //#use color
 // Twin of src/kernel/antialias.rs, which explains the constants.
@@ -106,7 +106,7 @@ fn stored_lod(m: Mean, draws: vec2f) -> f32 {
 
 // Whether a pixel takes the history of a neighbour's nearer surface, so that silhouettes are means of both surfaces and
 // move with the nearer one.
-fn stands_before(own: f32, neighbour: f32, own_motion: vec2f, motion: vec2f, full_rate: bool) -> bool {
+fn is_in_front(own: f32, neighbour: f32, own_motion: vec2f, motion: vec2f, full_rate: bool) -> bool {
     let difference = motion - own_motion;
     let alongside = max(abs(difference.x), abs(difference.y)) <= ALONGSIDE_PX;
     return neighbour > own * (1.0 + NEARER_RELATIVE) && neighbour > own && (full_rate || alongside);
@@ -330,8 +330,8 @@ fn average_beside(r: Reconstruction, past: Mean, place_px: vec2f) -> Averaged {
     return Averaged(added(r, place_px, share), mean);
 }
 
-// The texel that is stored for a pixel without a sample of its own: that of history, with fewer samples where history
-// does not fit.
+// The texel that is stored for a pixel without a sample of its own: history's, with fewer samples where it does not
+// fit.
 fn stored_mean(r: Reconstruction, result: Reconstructed, past: Mean) -> Averaged {
     let is_kept = result.stored.lod < COARSE_LOD && r.nearest.lod <= 0.0;
     let share = r.fit * r.trust;

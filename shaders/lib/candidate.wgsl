@@ -3,7 +3,7 @@
 //#use noise
 //#use pack
 //#use sanitize
-//#use sparse_smr
+//#use reconstruction
 // Twin of src/kernel/candidate.rs, which documents the functions.
 
 const SAMPLE_RELATIVE: f32 = 0.05;
@@ -54,16 +54,16 @@ fn no_samples() -> SampleSums {
     return SampleSums(zero, 0.0, 0.0, zero, 0.0, 0.0, vec3f(MAX_HALF), zero, zero, NO_PX2);
 }
 
-// Adds a sample at a squared distance in pixels, with its `sample_weight` and the light at it.
-fn add_sample(s: SampleSums, c: vec3f, alpha: f32, lit: Lit, weight: f32, px2: f32, same: bool) -> SampleSums {
-    let known = weight * select(BY_NEIGHBOURS, 1.0, lit.is_own);
+// Adds a sample at a squared distance in pixels, with its `sample_weight` and the rectification at it.
+fn add_sample(s: SampleSums, c: vec3f, alpha: f32, r: Rectification, weight: f32, px2: f32, same: bool) -> SampleSums {
+    let known = weight * select(BY_NEIGHBOURS, 1.0, r.is_own);
     let is_nearer = same && px2 < s.nearest_px2;
     return SampleSums(
         s.color + c * weight,
         s.alpha + alpha * weight,
         s.weight + weight,
-        s.gains + lit.gains * known,
-        s.fit + lit.fit * known,
+        s.gains + r.gains * known,
+        s.fit + r.fit * known,
         s.known + known,
         min(s.lowest, c),
         max(s.highest, c),

@@ -6,9 +6,9 @@
 // debug_view::DebugView
 const VIEW_QUALITY: u32 = 1u;
 const VIEW_AGE: u32 = 2u;
-const VIEW_SURVIVAL: u32 = 3u;
+const VIEW_HISTORY_SHARE: u32 = 3u;
 const VIEW_REJECTION: u32 = 4u;
-const VIEW_GATE: u32 = 5u;
+const VIEW_AGREEMENT: u32 = 5u;
 const VIEW_MOTION: u32 = 6u;
 
 struct PixelTrace {
@@ -61,7 +61,7 @@ fn view_color(view: u32, traced: PixelTrace) -> vec3f {
     switch view {
         case VIEW_QUALITY: { encoded = heat(traced.quality); }
         case VIEW_AGE: { encoded = heat(sqrt(f32(traced.age) * (1.0f / 255.0))); }
-        case VIEW_SURVIVAL: { encoded = heat(traced.history_share); }
+        case VIEW_HISTORY_SHARE: { encoded = heat(traced.history_share); }
         case VIEW_REJECTION: { encoded = verdict_color(traced.verdict); }
         case VIEW_MOTION: { encoded = motion_color(traced.motion); }
         default: {}

@@ -48,8 +48,7 @@ fn pooled_variance(history: Noise, candidate: Noise) -> f32 {
     return (history.samples * history.variance + candidate.samples * candidate.variance) / all_samples;
 }
 
-// Derivative of `root_difference` by linear luma, at a luma: that of 100 times its square root, limited for dark
-// colors.
+// Derivative of `root_difference` by linear luma, at a luma: 50 over its square root, limited for dark colors.
 fn root_slope(around: f32) -> f32 {
     return 50.0 / sqrt(max(around, 0.0) + DARK);
 }
@@ -79,8 +78,8 @@ fn noise_need(history: Noise, around: f32) -> f32 {
     return (slope * slope) * (history.variance / (samples * (samples + 1.0)));
 }
 
-// Weight of a sample of `samples` paths at a squared distance in pixels, in a mean of samples around a pixel: that of
-// its paths, less with distance.
+// Weight of a sample of `samples` paths at a squared distance in pixels, in a mean of samples around a pixel: its
+// number of paths, less with distance.
 fn noisy_share(samples: f32, px2: f32) -> f32 {
     return samples / sqrt(max(px2, 1.0));
 }

@@ -47,7 +47,7 @@ fn in_turn(x: u32, y: u32, step_quads: u32, turn: u32) -> bool {
 }
 
 // The pixel of quad (`x`, `y`) that is tested in a frame: each of the four in four frames.
-fn asked_px(x: u32, y: u32, frame_low: u32) -> vec2u {
+fn probed_px(x: u32, y: u32, frame_low: u32) -> vec2u {
     return vec2u(2u * x + ((frame_low ^ x ^ y) & 1u), 2u * y + ((frame_low >> 1u) & 1u));
 }
 
@@ -127,7 +127,7 @@ fn known_samples(samples: f32) -> u32 {
     return u32(clamp(samples, 1.0, MOST_KNOWN));
 }
 
-// Key of a pixel's path number `path` (from 1 on) in a frame, from that of its first path, `key`; 0 for none.
+// Key of a pixel's path number `path` (from 1 on) in a frame, from its first path's, `key`; 0 for none.
 fn path_key(key: u32, samples: u32, path: u32) -> u32 {
     let first = samples * (samples + 1u);
     let own = (samples + path - 1u) * (samples + path);
@@ -139,8 +139,8 @@ fn path_key(key: u32, samples: u32, path: u32) -> u32 {
     return select(0u, key - fall, key >= fall + (1u << HASH_BITS));
 }
 
-// Number of paths of a pixel whose first path has the key `first` and whose further paths have those of `path_key` of
-// `further`: as many as there are keys from `threshold` on.
+// Number of paths of a pixel whose first path has the key `first` and whose further paths have the keys that
+// `path_key` makes of `further`: as many as there are keys from `threshold` on.
 fn paths(first: u32, further: u32, samples: u32, is_even: bool, threshold: u32) -> u32 {
     var count = u32(is_even || first >= threshold);
     for (var path = 2u; path <= MOST_PATHS && path_key(further, samples, path) >= threshold; path++) {

@@ -80,7 +80,7 @@ fn taps_of(around: TapsAround, index: u32) -> FourTaps {
     );
 }
 
-// Sum of the taps' Catmull-Rom weights: 1 without those of the corners.
+// Sum of the taps' Catmull-Rom weights, the corners left out.
 fn sharp_sum(around: TapsAround) -> f32 {
     return 1.0 - (around.sharp_x.x + around.sharp_x.w) * (around.sharp_y.x + around.sharp_y.w);
 }

@@ -13,7 +13,7 @@ const CORRECTION: f32 = 0.2;
 const CORRECTION_BLOCKS: f32 = 0.1;
 const ALIKE_CONTRAST: f32 = 0.5;
 const GAIN: vec2f = vec2f(0.2, 5.0);
-const LEAST_WORN: f32 = 0.5 / LOD_STEPS;
+const LEAST_LOST_LOD: f32 = 0.5 / LOD_STEPS;
 const MIDDLE: f32 = 0.5;
 const LEAST_BRIGHTNESS: f32 = 0x1p-14;
 
@@ -120,7 +120,7 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
     var contrast = past_contrast(e.level, e.next_level);
     var d = past_difference(e.compared, e.matched);
     var k = vec3f(1.0);
-    var worn = 0.0;
+    var lost_lod = 0.0;
     if p.relight {
         let low = relight_from(contrast, p.blocks, e.noise);
         let share = select(0.0, 1.0, may_relight(reuse.finer, p.noisy));
@@ -134,12 +134,12 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
         let relit = past_difference(e.compared_coarser, gains * e.matched_coarser);
         let strongest = strongest_gain(gains);
         let doublings = abs(ln_approx(strongest) * LOG2_E);
-        let costs = select(doublings, LEAST_WORN, p.noisy) >= LEAST_WORN;
+        let costs = select(doublings, LEAST_LOST_LOD, p.noisy) >= LEAST_LOST_LOD;
         if relit < unlit * select(RELIT, RELIT_BLOCKS, p.blocks) && costs {
             d = relit;
             k = gains;
             contrast *= sqrt(strongest);
-            worn = select(doublings, 0.0, p.noisy);
+            lost_lod = select(doublings, 0.0, p.noisy);
         }
     }
     let width = p.accumulate_tolerance + (1.0 - p.accumulate_tolerance) * reuse.finer;
@@ -156,7 +156,7 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
     let shown = select(e.candidate + (history - e.candidate) * share, history, share == 1.0);
     var lod = e.lod;
     if reuse.finer > 0.0 {
-        lod = min((e.history_lod + (e.lod - e.history_lod) * (1.0 - reuse.finer * acceptance)) + worn, e.lod);
+        lod = min((e.history_lod + (e.lod - e.history_lod) * (1.0 - reuse.finer * acceptance)) + lost_lod, e.lod);
     } else if p.noisy {
         lod = e.lod + max(e.history_lod - e.lod, 0.0) * share;
     }

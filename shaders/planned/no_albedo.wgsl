@@ -1,4 +1,4 @@
-//#use sparse_smr
+//#use reconstruction
 // Frames without albedo. Functions that are never called: sparse_albedo, which has the same ones, takes the place of
 // this module where frames have it.
 

@@ -44,7 +44,7 @@ fn need_at(px: vec2u, view: u32) -> PixelNeed {
     for (var tap = 0u; tap < taps; tap++) {
         let texel = first + vec2f(vec2u(tap & 1u, tap >> 1u));
         let words = stored_words(vec2i(texel), view);
-        if !is_empty(words) && may_show(words, codes, moved_px) {
+        if !is_empty(words) && is_reusable(words, codes, moved_px) {
             let stored = unpack_full(words);
             lowest = min(lowest, stored.color);
             highest = max(highest, stored.color);
@@ -71,7 +71,7 @@ fn need_at(px: vec2u, view: u32) -> PixelNeed {
     let needed = need(lod, samples, root_difference(lowest, highest));
     var found = PixelNeed(select(needed, -1.0, lod < 0.0), 0.0, 1u);
     if NOISY != 0u && lod >= 0.0 {
-        // The variance of few samples is uncertain, therefore that of all four.
+        // The variance of few samples is uncertain: the mean of all four takes its place.
         past.variance = mean_noise(noises).variance;
         found.noise = noise_need(past, past_luma);
         found.samples = known_samples(past.samples);
@@ -125,8 +125,8 @@ fn block(at: vec2u, view: u32) {
             let alone = 2u * quad + vec2u(even_place(region_now) & 1u, even_place(region_now) >> 1u);
             even = even && all(alone < frame.size) && is_seen(alone, view);
         }
-        let asked = place_in_quad(asked_px(quad.x, quad.y, frame.frame_low));
-        let place = select(asked, even_place(region_now), even);
+        let probed = place_in_quad(probed_px(quad.x, quad.y, frame.frame_low));
+        let place = select(probed, even_place(region_now), even);
         var pixels = WHOLE;
         if is_single {
             pixels = 1u << place;
@@ -136,8 +136,8 @@ fn block(at: vec2u, view: u32) {
         words = select(words, vec4u(key_word(0u, region_now, even, pixels)), is_i);
         let px = 2u * quad + vec2u(place & 1u, place >> 1u);
         even_count += u32(even);
-        let is_asked = region_now != IN_FOVEA && (!even || NOISY != 0u) && all(px < frame.size);
-        if HAS_SPARSE_HISTORY != 0u && frame.has_budget != 0u && is_asked && is_seen(px, view) {
+        let is_probed = region_now != IN_FOVEA && (!even || NOISY != 0u) && all(px < frame.size);
+        if HAS_SPARSE_HISTORY != 0u && frame.has_budget != 0u && is_probed && is_seen(px, view) {
             let found = need_at(px, view);
             let first = vec2u(frame.first_quad & 0xffffu, frame.first_quad >> 16u);
             let no_history = no_history_need(quad.x, quad.y, first);

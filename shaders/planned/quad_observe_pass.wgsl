@@ -3,7 +3,7 @@
 //#use quad_plan
 //#use quad_samples
 // Comparison of shaded quads with history. CPU twin: `observe_quads` in src/cpu/planned/quad_samples.rs. One
-// invocation a pixel of a shaded quad; those of the fovea are not compared.
+// invocation a pixel of a shaded quad; quads of the fovea are not compared.
 //
 // With ANTIALIAS 29 reads and 1 write a sample: color, 9 of depth, 3 of motion, trust, 10 stored samples, list and
 // mask; 8 bytes written.
@@ -27,7 +27,7 @@ fn observe(px: vec2u, view: u32) -> vec2u {
     let comparable = color(sample_at(px, view).xyz).usable && !surface.is_silhouette;
     let needed = may_have_history(source.previous) && comparable;
     let found = sparse_history(source, view, needed, past_albedos(px, view));
-    let history = found.found;
+    let history = found.interpolated;
     if !needed || history.lod < 0.0 {
         return nothing;
     }

@@ -5,7 +5,7 @@
 // Reconstruction of frames shaded by quads: candidates of pixels from the shaded quads around them. CPU twin:
 // `quad_candidate` in src/cpu/planned/quad_samples.rs.
 
-@group(0) @binding(21) var lights: texture_2d_array<u32>;
+@group(0) @binding(21) var rectified: texture_2d_array<u32>;
 
 // Mean of the samples around a noisy pixel with a sample, its own included, and the mean variance of one.
 fn mean_around(around: AroundPixel, px: vec2u, view: u32, codes: vec2u) -> vec4f {
@@ -16,7 +16,7 @@ fn mean_around(around: AroundPixel, px: vec2u, view: u32, codes: vec2u) -> vec4f
         let sample = noisy_tap(around, tap, px, view);
         let at = min(sample.at, frame.size - 1u);
         let sampled = color(sample_at(at, view).xyz);
-        let words = textureLoad(lights, at >> vec2u(1u), view, 0);
+        let words = textureLoad(rectified, at >> vec2u(1u), view, 0);
         let place = (at.x & 1u) | ((at.y & 1u) << 1u);
         let same = DEPTH_TEST == 0u || has_code(quad_code(words, place), codes);
         if sample.is_there && sampled.usable && (same || all(at == px)) {
@@ -36,7 +36,7 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
     var sums = no_samples();
     var is_own = false;
     var own = vec4f(0.0);
-    var own_fits = 1.0;
+    var own_fit = 1.0;
     var noises = NoiseSum(0.0, 0.0, 0.0);
     var albedos = sample_albedos(px, view);
     // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
@@ -47,16 +47,16 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
         let given = sample_at(at, view);
         let sampled = color(given.xyz);
         if sample.is_there && sampled.usable {
-            let words = textureLoad(lights, at >> vec2u(1u), view, 0);
+            let words = textureLoad(rectified, at >> vec2u(1u), view, 0);
             let place = (at.x & 1u) | ((at.y & 1u) << 1u);
-            let lit = quad_lit(words, place);
+            let r = unpack_rectification(words, place);
             let same = DEPTH_TEST == 0u || has_code(quad_code(words, place), codes);
             let x = f32(at.x) - f32(px.x);
             let y = f32(at.y) - f32(px.y);
             let px2 = x * x + y * y;
             let weight = sample_weight(px2, same);
             let alpha = usable_alpha(given.w);
-            sums = add_sample(sums, sampled.color, alpha, lit, weight, px2, same);
+            sums = add_sample(sums, sampled.color, alpha, r, weight, px2, same);
             if HAS_ALBEDO {
                 albedos = with_sample(albedos, at, view, sampled.color, weight);
             }
@@ -66,7 +66,7 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
             if all(at == px) {
                 is_own = true;
                 own = vec4f(sampled.color, alpha);
-                own_fits = lit.own_fit;
+                own_fit = r.center_fit;
             }
         }
     }
@@ -81,7 +81,7 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
     candidate.alpha = select(mean.alpha, own.w, is_own);
     candidate.lod = select(mean.lod, 0.0, is_own);
     candidate.gains = mean.gains;
-    candidate.fit = min(mean.fit, own_fits);
+    candidate.fit = min(mean.fit, own_fit);
     candidate.lowest = sums.lowest;
     candidate.highest = sums.highest;
     candidate.beside = sums.beside;

@@ -1,7 +1,7 @@
 //#use demodulation
 //#use inputs
 //#use rng
-//#use sparse_smr
+//#use reconstruction
 // Albedo in the pass of planned frames: of the samples around a pixel, of history's texels, and of the result. Takes
 // the place of no_albedo. CPU twin: src/cpu/planned/albedo.rs.
 

@@ -2,7 +2,7 @@
 //#use no_albedo
 //#use previous
 //#use pack
-//#use sparse_smr
+//#use reconstruction
 //#use color
 // Stored samples around the previous position of a pixel's surface. CPU twin: src/cpu/planned/sparse_history.rs.
 
@@ -26,7 +26,7 @@ fn stored_words(texel: vec2i, view: u32) -> vec2u {
 
 // Whether a stored sample may show a surface whose history has one of `codes`, and which moved by `moved_px` in the
 // world.
-fn may_show(words: vec2u, codes: vec2u, moved_px: f32) -> bool {
+fn is_reusable(words: vec2u, codes: vec2u, moved_px: f32) -> bool {
     return DEPTH_TEST == 0u || (has_code(code_word(words), codes) && moved_alike(words, moved_px));
 }
 
@@ -58,7 +58,7 @@ struct PixelSurface {
     is_moving_edge: bool,
 }
 
-// The surface whose history a pixel continues: with ANTIALIAS the nearest surface around it if `stands_before` is true,
+// The surface whose history a pixel continues: with ANTIALIAS the nearest surface around it if `is_in_front` is true,
 // otherwise its own. `level`: of its region.
 fn surface_of(px: vec2u, view: u32, level: u32) -> PixelSurface {
     let own = disparity_at(px, view);
@@ -95,7 +95,7 @@ fn surface_of(px: vec2u, view: u32, level: u32) -> PixelSurface {
     let motion = motion_at(nearest_at, view);
     let is_moving = edge && level > 0u && has_moved(own_motion, motion);
     var surface = PixelSurface(own, own_motion, own, own_moved_px, own, own, false, false, edge, is_moving);
-    if stands_before(own, nearest_disparity, own_motion, motion, level == 0u) {
+    if is_in_front(own, nearest_disparity, own_motion, motion, level == 0u) {
         let moved_px = moved_px_at(nearest_at, view, nearest_disparity, motion);
         surface = PixelSurface(nearest_disparity, motion, nearest_disparity, moved_px, own, own, false, false, edge, is_moving);
     }
@@ -147,7 +147,7 @@ fn may_have_history(previous: Previous) -> bool {
 
 // History, the texel of the sample to keep, and the samples in it.
 struct SparseHistory {
-    found: Interpolated,
+    interpolated: Interpolated,
     texel: vec2i,
     mean: Mean,
     // Alpha at the position, and of the sample to keep.
@@ -180,7 +180,7 @@ fn sparse_history(source: SparseSource, view: u32, needed: bool, no_texels: Past
     for (var tap = 0u; tap < taps; tap++) {
         let texel = first + vec2i(vec2u(tap % columns, tap / columns));
         let words = stored_words(texel, view);
-        let same = !is_empty(words) && may_show(words, source.codes, source.moved_px);
+        let same = !is_empty(words) && is_reusable(words, source.codes, source.moved_px);
         let cost = around.cost;
         var stored = unpack_full(words);
         let lod = stored.lod;
@@ -230,7 +230,7 @@ struct Comparison {
 }
 
 fn comparison(history: SparseHistory, contrast: f32, motion: vec2f) -> Comparison {
-    let found = history.found;
+    let found = history.interpolated;
     if ANTIALIAS == 0u {
         return Comparison(expected_error(found.lod, contrast, has_moved(motion, found.nearest.place_px)), 0.0);
     }

@@ -3,8 +3,8 @@
 //#use sparse_noise
 //#use output
 //#use rng
-//#use sparse_smr
-// Pixel of smr from stored samples of history and the candidate around it.
+//#use reconstruction
+// Pixel of a planned frame, from stored samples of history and the candidate around it.
 // CPU twin: `pixel` in src/cpu/planned/pixel.rs; docs/method.md has the equations.
 
 @group(0) @binding(18) var next_stored: texture_storage_2d_array<rg32uint, write>;
@@ -47,7 +47,7 @@ fn is_centred_at(view: u32, level: u32, candidate: Candidate) -> bool {
     return ANTIALIAS != 0u && candidate.is_own && level == 0u && surrounds_centre(frame.views[view].jitter_px);
 }
 
-// Whether the result at a pixel is that of the sample beside it. `at_edge`: whether it is at a moving edge;
+// Whether a pixel shows the sample beside it. `at_edge`: whether it is at a moving edge;
 // `nearest_lod`: level of detail of history's nearest sample.
 fn takes_beside(candidate: Candidate, at_edge: bool, nearest_lod: f32) -> bool {
     return !candidate.is_own && at_edge && candidate.is_beside && nearest_lod <= 0.0;
@@ -114,133 +114,177 @@ fn hidden_pixel(px: vec2u, view: u32) {
     }
 }
 
-// Processes a visible pixel. `level`: log2 of the distance of the samples around it; at level 0 it has a sample in
-// every frame. `near`: sums over the nine samples around a pixel of level 0, of jittered frames.
-fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candidate, near: Near) {
-    var candidate = given;
-    let surface = surface_of(px, view, level);
-    let motion = surface.motion;
-    let source = sparse_source(px, view, surface);
-    let previous = source.previous;
-    let is_final = candidate.usable && level == 0u && NOISY == 0u && ANTIALIAS == 0u;
-    let needed = may_have_history(previous) && !is_final;
-    let found = sparse_history(source, view, needed, past_albedos(px, view));
-    let history = found.found;
-    let verdict = select(previous.verdict, VERDICT_VALID, history.lod >= 0.0);
-    let valid = verdict == VERDICT_VALID;
-    count_pixel(px, view, candidate.usable, disparity_now, verdict);
-    if NOISY != 0u && candidate.is_own {
-        var past = 0.0;
-        if history.lod >= 0.0 {
-            past = stored_noise(found.texel, view).samples;
-        }
-        let with_borrowed = borrow_around(candidate.color, candidate.noise, candidate.around, past);
-        candidate.color = with_borrowed.color;
-        candidate.noise = with_borrowed.noise;
-    }
+// What a pixel shows and stores, in frames with albedo still with the texture of its samples.
+struct Resolved {
+    result: Reconstructed,
+    mean: Mean,
+    noise: Noise,
+    // To show, and to store.
+    alpha: vec2f,
+    fit: f32,
+}
 
-    var shown = candidate.color;
-    let candidate_lod = select(-1.0, candidate.lod, candidate.usable);
-    var next = StoredSample(candidate.color, candidate_lod, surface.stored_disparity, vec2f(0.0));
-    var mean = Mean(0.0, 1.0, 0.0, 0.0);
+// A pixel without history: its candidate.
+fn candidate_alone(view: u32, level: u32, candidate: Candidate, near: Near) -> Resolved {
+    let lod = select(-1.0, candidate.lod, candidate.usable);
+    var next = StoredSample(candidate.color, lod, -1.0, vec2f(0.0));
     if is_centred_at(view, level, candidate) {
-        // Without history the samples around antialias alone.
-        shown = candidate.color + centred_change(near);
-        next.color = shown;
+        // The samples around antialias alone.
+        next.color = candidate.color + centred_change(near);
     } else if ANTIALIAS != 0u && candidate.is_own {
         next.place_px = -frame.views[view].jitter_px;
     }
-    var share = 0.0;
-    var fits = 1.0;
-    var noise = candidate.noise;
-    // To show, and to store.
-    var alpha = vec2f(candidate.alpha);
-    var result = Reconstructed(shown, next, 0.0, false, 0.0);
-    if history.lod >= 0.0 {
-        if candidate.usable {
-            var inputs: Reconstruction;
-            inputs.candidate = candidate.color;
-            inputs.lod = candidate.lod;
-            inputs.lowest = candidate.lowest;
-            inputs.highest = candidate.highest;
-            inputs.history = history.color;
-            inputs.history_lod = history.lod;
-            inputs.nearest = history.nearest;
-            var moved = has_moved(vec2f(0.0), history.nearest.place_px);
-            if ANTIALIAS != 0u {
-                moved = has_moved(motion, vec2f(0.0));
-            }
-            inputs.worn = worn(moved, ANTIALIAS != 0u);
-            inputs.gains = candidate.gains;
-            inputs.fit = candidate.fit;
-            inputs.trust = previous.trust;
-            inputs.accumulate = frame.smr_accumulate;
-            if NOISY != 0u {
-                let accumulated = accumulate(inputs, stored_noise(found.texel, view), candidate.noise);
-                result = accumulated.result;
-                noise = accumulated.noise;
-            } else if ANTIALIAS != 0u {
-                let contrast = root_difference(history.lowest, history.highest);
-                let error = expected_mean_error(found.mean, contrast, moved);
-                let averaged = antialiased(view, level, inputs, found.mean, error, candidate, surface.is_moving_edge, near);
-                result = averaged.result;
-                mean = averaged.mean;
-            } else {
-                result = reconstruct(inputs);
-            }
-            shown = result.color;
-            alpha = result_alpha(result, candidate.alpha, found.alpha.x, found.alpha.y);
-            share = result.share;
-            fits = candidate.fit;
-            next = result.stored;
-        } else {
-            shown = history.color;
-            alpha = found.alpha;
-            share = 1.0;
-            next = history.nearest;
-            result = Reconstructed(shown, next, 1.0, true, 1.0);
-            mean = found.mean;
-            if NOISY != 0u {
-                noise = stored_noise(found.texel, view);
-            }
-        }
-        next.disparity = surface.stored_disparity;
+    let result = Reconstructed(next.color, next, 0.0, false, 0.0);
+    return Resolved(result, Mean(0.0, 1.0, 0.0, 0.0), candidate.noise, vec2f(candidate.alpha), 1.0);
+}
+
+// A pixel without a usable candidate: its history.
+fn history_alone(past: SparseHistory, noise: Noise) -> Resolved {
+    let history = past.interpolated;
+    let result = Reconstructed(history.color, history.nearest, 1.0, true, 1.0);
+    return Resolved(result, past.mean, noise, past.alpha, 1.0);
+}
+
+// A pixel with history and a usable candidate: history, relit, blended with the candidate. Arguments as for
+// `show_pixel`; `trust`: trust in history; `past_noise`: its noise.
+fn blend_history(
+    view: u32,
+    level: u32,
+    surface: PixelSurface,
+    trust: f32,
+    past: SparseHistory,
+    past_noise: Noise,
+    candidate: Candidate,
+    near: Near,
+) -> Resolved {
+    let history = past.interpolated;
+    var moved = has_moved(vec2f(0.0), history.nearest.place_px);
+    if ANTIALIAS != 0u {
+        moved = has_moved(surface.motion, vec2f(0.0));
     }
-    var texture: Retextured;
+    var inputs: Reconstruction;
+    inputs.candidate = candidate.color;
+    inputs.lod = candidate.lod;
+    inputs.lowest = candidate.lowest;
+    inputs.highest = candidate.highest;
+    inputs.history = history.color;
+    inputs.history_lod = history.lod;
+    inputs.nearest = history.nearest;
+    inputs.lod_loss_per_stop = lod_loss_per_stop(moved, ANTIALIAS != 0u);
+    inputs.gains = candidate.gains;
+    inputs.fit = candidate.fit;
+    inputs.trust = trust;
+    inputs.accumulate = frame.smr_accumulate;
+    var blended: Resolved;
+    blended.mean = Mean(0.0, 1.0, 0.0, 0.0);
+    blended.noise = candidate.noise;
+    blended.fit = candidate.fit;
+    if NOISY != 0u {
+        let accumulated = accumulate(inputs, past_noise, candidate.noise);
+        blended.result = accumulated.result;
+        blended.noise = accumulated.noise;
+    } else if ANTIALIAS != 0u {
+        let contrast = root_difference(history.lowest, history.highest);
+        let error = expected_mean_error(past.mean, contrast, moved);
+        let averaged = antialiased(view, level, inputs, past.mean, error, candidate, surface.is_moving_edge, near);
+        blended.result = averaged.result;
+        blended.mean = averaged.mean;
+    } else {
+        blended.result = reconstruct(inputs);
+    }
+    blended.alpha = result_alpha(blended.result, candidate.alpha, past.alpha.x, past.alpha.y);
+    return blended;
+}
+
+// Writes the sample that a pixel stores, and what is stored beside it. `moved_px`: motion of its surface in the world.
+fn store_sample(px: vec2u, view: u32, pixel: Resolved, moved_px: f32, albedo_word: u32) {
+    var next = pixel.result.stored;
+    var words = pack_stored(next);
+    if ANTIALIAS != 0u {
+        // Color, number of samples and deviation are rounded stochastically.
+        let random = bits(px.x, px.y, frame.frame_low, frame.views[view].key);
+        var mean = pixel.mean;
+        mean.lod = next.lod;
+        next.lod = stored_lod(mean, byte_draws(random));
+        words = vec2u(pack_color_by(next.color, unit_draw(random)), pack_stored(next).y);
+    }
+    textureStore(next_stored, px, view, vec4u(with_motion(words, moved_px), 0u, 0u));
+    if NOISY != 0u {
+        textureStore(next_noise, px, view, vec4u(pack_noise(pixel.noise), 0u, 0u, 0u));
+    }
+    if HAS_ALPHA != 0u {
+        textureStore(next_extra, px, view, vec4u(bitcast<u32>(pixel.alpha.y), 0u, 0u, 0u));
+    }
     if HAS_ALBEDO {
-        let of_candidate = candidate.albedos.albedo;
-        texture = retexture(px, view, level, surface.is_edge, of_candidate, found.albedos, history, result, mean.samples);
+        textureStore(next_extra, px, view, vec4u(albedo_word, 0u, 0u, 0u));
+    }
+}
+
+// Processes a visible pixel. `level`: log2 of the distance of the samples around it; at level 0 it has a sample in
+// every frame. `near`: sums over the nine samples around a pixel of level 0, of jittered frames.
+fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candidate, near: Near) {
+    let surface = surface_of(px, view, level);
+    let source = sparse_source(px, view, surface);
+    let is_final = given.usable && level == 0u && NOISY == 0u && ANTIALIAS == 0u;
+    let needed = may_have_history(source.previous) && !is_final;
+    let past = sparse_history(source, view, needed, past_albedos(px, view));
+    let has_history = past.interpolated.lod >= 0.0;
+    let verdict = select(source.previous.verdict, VERDICT_VALID, has_history);
+    count_pixel(px, view, given.usable, disparity_now, verdict);
+
+    var candidate = given;
+    var past_noise = Noise(0.0, 0.0);
+    if NOISY != 0u && has_history {
+        past_noise = stored_noise(past.texel, view);
+    }
+    if NOISY != 0u && candidate.is_own {
+        let borrowed = borrow_around(candidate.color, candidate.noise, candidate.around, past_noise.samples);
+        candidate.color = borrowed.color;
+        candidate.noise = borrowed.noise;
+    }
+
+    var pixel = candidate_alone(view, level, candidate, near);
+    if has_history {
+        if candidate.usable {
+            let trust = source.previous.trust;
+            pixel = blend_history(view, level, surface, trust, past, past_noise, candidate, near);
+        } else {
+            pixel = history_alone(past, past_noise);
+        }
+    }
+    pixel.result.stored.disparity = surface.stored_disparity;
+
+    var shown = pixel.result.color;
+    var albedo_word = 0u;
+    if HAS_ALBEDO {
+        let texture = retexture(
+            px,
+            view,
+            level,
+            surface.is_edge,
+            candidate.albedos.albedo,
+            past.albedos,
+            past.interpolated,
+            pixel.result,
+            pixel.mean.samples,
+        );
+        let place_px = pixel.result.stored.place_px;
         shown *= texture.shown;
-        next.color *= texture.stored;
-        next.place_px += (-frame.views[view].jitter_px - next.place_px) * texture.place_share;
+        pixel.result.stored.color *= texture.stored;
+        pixel.result.stored.place_px += (-frame.views[view].jitter_px - place_px) * texture.place_share;
+        albedo_word = texture.word;
     }
     // Means of colors may exceed the largest half.
     shown = clamp(shown, vec3f(-MAX_HALF), vec3f(MAX_HALF));
-    count_if(valid && share == 0.0, COUNT_REPLACED);
-    let sharpness = exp2_approx(-max(next.lod, 0.0));
-    let traced = PixelTrace(verdict, exp2_approx(-candidate.lod), sharpness, 0u, share, fits, share == 0.0, motion);
-    if HAS_ALPHA == 0u {
-        alpha = vec2f(candidate.alpha);
-    }
-    write_output(px, view, shown, alpha.x, traced);
+
+    let share = pixel.result.share;
+    count_if(verdict == VERDICT_VALID && share == 0.0, COUNT_REPLACED);
+    let sharpness = exp2_approx(-max(pixel.result.stored.lod, 0.0));
+    let weight = exp2_approx(-candidate.lod);
+    let trace = PixelTrace(verdict, weight, sharpness, 0u, share, pixel.fit, share == 0.0, surface.motion);
+    let alpha = select(candidate.alpha, pixel.alpha.x, HAS_ALPHA != 0u);
+    write_output(px, view, shown, alpha, trace);
     if VIEW == 0u {
-        var words = pack_stored(next);
-        if ANTIALIAS != 0u {
-            // Color, number of samples and deviation are rounded stochastically.
-            let random = bits(px.x, px.y, frame.frame_low, frame.views[view].key);
-            mean.lod = next.lod;
-            next.lod = stored_lod(mean, byte_draws(random));
-            words = vec2u(pack_color_by(next.color, unit_draw(random)), pack_stored(next).y);
-        }
-        textureStore(next_stored, px, view, vec4u(with_motion(words, surface.moved_px), 0u, 0u));
-        if NOISY != 0u {
-            textureStore(next_noise, px, view, vec4u(pack_noise(noise), 0u, 0u, 0u));
-        }
-        if HAS_ALPHA != 0u {
-            textureStore(next_extra, px, view, vec4u(bitcast<u32>(alpha.y), 0u, 0u, 0u));
-        }
-        if HAS_ALBEDO {
-            textureStore(next_extra, px, view, vec4u(texture.word, 0u, 0u, 0u));
-        }
+        store_sample(px, view, pixel, surface.moved_px, albedo_word);
     }
 }

@@ -67,7 +67,7 @@ pub(super) fn note_surface(pixel: &Pixel, notes: &mut Vec<Note>) {
     note_noise(pixel, notes);
 }
 
-/// Notes the stored sample of smr on planned frames.
+/// Notes the stored sample of a planned frame.
 pub(super) fn note_stored(pixel: &Pixel, notes: &mut Vec<Note>) {
     let stored = unpack_stored(pixel.surface);
     notes.note(NoteStage::Stored, "color", stored.color, "linear light");

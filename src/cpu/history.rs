@@ -169,7 +169,7 @@ impl History {
         self.state[index].with(&frame.views[index], frame.exposure)
     }
 
-    /// Previous packed samples of `view`; empty except for smr on planned frames, and without history.
+    /// Previous packed samples of `view`; empty except on planned frames, and without history.
     pub(super) fn sparse(&self, view: usize) -> &[[u32; 2]] {
         let is_sparse = matches!(self.layout, HistoryLayout::Sparse { .. }) && self.filled;
         if is_sparse { &self.previous.surfaces[view * self.view_len..(view + 1) * self.view_len] } else { &[] }

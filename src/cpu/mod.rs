@@ -64,8 +64,8 @@ pub struct CpuAfterimage {
 // For tests and the lab.
 #[doc(hidden)]
 impl CpuAfterimage {
-    /// Processes a planned frame of smr as [`process_traced`](Self::process_traced) does, with alpha: the twin of what
-    /// a GPU does with [`ContextDesc::keep_alpha`]. `alpha` is that of the colors, `shown_alpha` that of the output;
+    /// Processes a planned frame as [`process_traced`](Self::process_traced) does, with alpha: the twin of what
+    /// a GPU does with [`ContextDesc::keep_alpha`]. `alpha`: of the colors; `shown_alpha`: of the output;
     /// one image of the context's size a view each.
     ///
     /// # Errors
@@ -81,7 +81,7 @@ impl CpuAfterimage {
         shown_alpha: &mut [Image<f32>],
         traces: Option<&mut [Image<PixelTrace>]>,
     ) -> Result<FrameStats, FrameError> {
-        assert_eq!(self.desc.settings.algorithm(), Algorithm::SmrSparse);
+        assert_eq!(self.desc.settings.algorithm(), Algorithm::Reconstruction);
         check_sizes(&self.desc, "alpha", Some(alpha.iter().map(|i| i.size())))?;
         check_sizes(&self.desc, "alpha", Some(shown_alpha.iter().map(Image::size)))?;
         self.history.keep_alpha();
@@ -316,7 +316,7 @@ impl CpuAfterimage {
             Algorithm::Taa => surface_pass::run(pass, &taa_pass::Taa),
             Algorithm::Taau => surface_pass::run(pass, &taau_pass::Taau),
             Algorithm::Smr => surface_pass::run(pass, &smr_pass::Smr::new(&self.desc.settings)),
-            Algorithm::SmrSparse => planned::run(pass),
+            Algorithm::Reconstruction => planned::run(pass),
             Algorithm::Wrs => wrs_pass::run(pass),
         };
         if let Some(pixel) = noted {

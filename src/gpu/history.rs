@@ -28,7 +28,7 @@ pub(super) struct Planes {
 }
 
 impl Planes {
-    /// The texture of binding `i` of three. The last one is that of alpha or albedo, if there is one.
+    /// The texture of binding `i` of three. The last one has alpha or albedo, if frames have them.
     fn at(&self, i: usize) -> Option<&Plane> {
         self.planes.get(i).or_else(|| self.extra.as_ref().filter(|_| i == 2))
     }

@@ -51,7 +51,7 @@ impl Passes for MethodPass {
 
     fn record<'a>(&'a self, job: &mut Job<'a>) {
         let shader = self.shader(job.device, job.special);
-        let read = job.lights.or(job.history.candidates.as_ref().map(|candidates| &candidates.whole));
+        let read = job.rectified.or(job.history.candidates.as_ref().map(|candidates| &candidates.whole));
         let own: Vec<_> = read.map(|view| (Binding::Read, view.into())).into_iter().collect();
         let blocks = job.desc.size_px.map(|s| s.div_ceil(self.pass.block_px));
         for batch in job.batches() {

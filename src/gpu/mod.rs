@@ -126,7 +126,7 @@ impl Afterimage {
 
     /// History textures of the last recorded frame, for tests and the lab; usages `COPY_SRC`, `COPY_DST`.
     ///
-    /// For smr on planned frames the packed samples ([`stored_sample`](crate::kernel::stored_sample), `Rg32Uint`).
+    /// For planned frames the packed samples ([`stored_sample`](crate::kernel::stored_sample), `Rg32Uint`).
     ///
     /// For wrs the packed reservoirs ([`stored_reservoir`](crate::kernel::stored_reservoir)): words 0 and 1
     /// (`Rg32Uint`), word 2 (`R32Uint`), and with A-ES the keys, or the gate's references (`R32Uint`). For taa and smr
@@ -137,7 +137,7 @@ impl Afterimage {
     }
 
     /// Alphas of the stored samples of the last recorded frame, as floats (`R32Uint`), if the context keeps alpha and
-    /// processes planned frames by smr; usages as for [`history_textures`](Self::history_textures).
+    /// processes planned frames; usages as for [`history_textures`](Self::history_textures).
     pub fn alpha_texture(&self) -> Option<Texture> {
         self.extra_texture().filter(|_| !self.desc.has_albedo)
     }
@@ -406,7 +406,7 @@ impl Afterimage {
             special,
             uniforms,
             history: &self.history,
-            lights: None,
+            rectified: None,
             quads: None,
             recorder: &mut self.recorder,
         };
@@ -546,7 +546,7 @@ impl Afterimage {
             special: Specialization::new(Variant::of(frame, target), view, self.generation).partial(is_partial),
             uniforms,
             history: &self.history,
-            lights: None,
+            rectified: None,
             quads: self.quads.as_ref().map(|quads| &quads.quads),
             recorder: &mut self.recorder,
         };

@@ -109,7 +109,7 @@ pub(super) struct Job<'a> {
     pub uniforms: FrameUniforms,
     pub history: &'a History,
     /// Gain and fit at each shaded quad, for smr.
-    pub lights: Option<&'a TextureView>,
+    pub rectified: Option<&'a TextureView>,
     /// Shaded quads, of a frame shaded by quads.
     pub quads: Option<&'a Quads>,
     pub recorder: &'a mut Recorder,

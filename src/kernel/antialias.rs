@@ -8,7 +8,7 @@
 
 use super::approx::smooth_step;
 use super::color::{ROUNDING, clip_to_box, luma, root_difference, roots, to_ycocg};
-use super::sparse_smr::{
+use super::reconstruction::{
     CONTRAST_ERROR, MOVED_ERROR, Observation, ObservedAround, Reconstructed, Reconstruction, relit,
 };
 use super::stored_sample::{FARTHEST_PX, StoredSample};
@@ -176,7 +176,7 @@ pub fn stored_lod(m: Mean, draws: [f32; 2]) -> f32 {
 /// and move with the nearer one. `full_rate`: whether the pixel has a sample in every frame. Other pixels keep their
 /// own surface if it moves differently.
 #[inline]
-pub fn stands_before(own: f32, neighbour: f32, own_motion: Vec2, motion: Vec2, full_rate: bool) -> bool {
+pub fn is_in_front(own: f32, neighbour: f32, own_motion: Vec2, motion: Vec2, full_rate: bool) -> bool {
     let difference = motion - own_motion;
     let alongside = difference.x.abs().max(difference.y.abs()) <= ALONGSIDE_PX;
     neighbour > own * (1.0 + NEARER_RELATIVE) && neighbour > own && (full_rate || alongside)
@@ -199,8 +199,8 @@ pub fn is_of_surfaces(stored: f32, farthest: f32, nearest: f32) -> bool {
 }
 
 /// Whether a pixel's surface is narrower than two pixels along the line through two opposite neighbours: both show
-/// farther surfaces. The jitter of a later frame may miss it, so that the pixel's history is stored as that of the
-/// farther surface.
+/// farther surfaces. The jitter of a later frame may miss it, so that the pixel's history is stored as the farther
+/// surface's.
 #[inline]
 pub fn is_thin(own: f32, a: f32, b: f32) -> bool {
     a.min(b) >= 0.0 && a.max(b) < own * (1.0 - NEARER_RELATIVE)
@@ -317,7 +317,7 @@ pub fn scattered_error(a: ObservedAround, scatter: f32) -> f32 {
 
 /// Expected difference between a sample and the mean at its pixel: the deviation of the samples in the mean, to which
 /// the local contrast adds one imagined sample. A still mean has at least its own deviation; in one that moves it may
-/// come from the motion. As [`expected_error`](super::sparse_smr::expected_error).
+/// come from the motion. As [`expected_error`](super::reconstruction::expected_error).
 #[inline]
 pub fn expected_mean_error(past: Mean, contrast: f32, moved: bool) -> f32 {
     // The limit keeps compilers from merging factors.
@@ -471,8 +471,8 @@ pub fn average_beside(r: &Reconstruction, past: Mean, place_px: Vec2) -> Average
     Averaged { result: added(r, place_px, share), mean }
 }
 
-/// The texel that is stored for a pixel without a sample of its own: that of history, with fewer samples where history
-/// does not fit. `result`: of [`reconstruct`](super::sparse_smr::reconstruct).
+/// The texel that is stored for a pixel without a sample of its own: history's, with fewer samples where it does not
+/// fit. `result`: of [`reconstruct`](super::reconstruction::reconstruct).
 #[inline]
 pub fn stored_mean(r: &Reconstruction, result: Reconstructed, past: Mean) -> Averaged {
     let is_kept = result.stored.lod < COARSE_LOD && r.nearest.lod <= 0.0;

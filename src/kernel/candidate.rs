@@ -1,4 +1,5 @@
-//! Candidate of a pixel of a planned frame: the samples around it, weighted by their distance, and the light at them.
+//! Candidate of a pixel of a planned frame: the samples around it, weighted by their distance, and the
+//! rectification of history at them.
 //! As in checkerboard rendering, where a missing pixel is interpolated from those that were shaded around it; here they
 //! lie at any distance.
 
@@ -6,8 +7,8 @@ use super::approx;
 use super::color::luma;
 use super::noise::{Noise, borrowed, noisy_share};
 use super::pack::codes_between;
+use super::reconstruction::Rectification;
 use super::sanitize::MAX_HALF;
-use super::sparse_smr::Lit;
 use glam::{Vec3, Vec4};
 use std::f32::consts::LOG2_E;
 
@@ -91,18 +92,26 @@ pub fn no_samples() -> SampleSums {
     }
 }
 
-/// Adds a sample at a squared distance in pixels, with its [`sample_weight`] and the light at it. `same`: whether it
-/// shows the pixel's surface.
+/// Adds a sample at a squared distance in pixels, with its [`sample_weight`] and the rectification at it. `same`:
+/// whether it shows the pixel's surface.
 #[inline(always)]
-pub fn add_sample(s: SampleSums, color: Vec3, alpha: f32, lit: Lit, weight: f32, px2: f32, same: bool) -> SampleSums {
-    let known = weight * if lit.is_own { 1.0 } else { BY_NEIGHBOURS };
+pub fn add_sample(
+    s: SampleSums,
+    color: Vec3,
+    alpha: f32,
+    r: Rectification,
+    weight: f32,
+    px2: f32,
+    same: bool,
+) -> SampleSums {
+    let known = weight * if r.is_own { 1.0 } else { BY_NEIGHBOURS };
     let is_nearer = same && px2 < s.nearest_px2;
     SampleSums {
         color: s.color + color * weight,
         alpha: s.alpha + alpha * weight,
         weight: s.weight + weight,
-        gain: s.gain + lit.gain * known,
-        fit: s.fit + lit.fit * known,
+        gain: s.gain + r.gain * known,
+        fit: s.fit + r.fit * known,
         known: s.known + known,
         lowest: s.lowest.min(color),
         highest: s.highest.max(color),

@@ -24,13 +24,13 @@ pub enum DebugView {
     Age = 2,
     /// History's share: black 0, white 1. For wrs the share of its weight sum that survived bias and gate; for smr, taa
     /// and taau its share in the output color.
-    Survival = 3,
+    HistoryShare = 3,
     /// Verdict on the history, in the color that [`Verdict`] says.
     Rejection = 4,
     /// Agreement of history and candidate: white 1, black 0. For wrs the value of the color gate; for smr how well
     /// history explains the candidate; for taau the share of its confidence that history kept when clipped. White for
     /// the other methods.
-    Gate = 5,
+    Agreement = 5,
     /// Motion of the surface: hue is the direction (red right, cyan left), saturation the length, full at 16 pixels;
     /// grey is no motion, green NaN or infinite.
     Motion = 6,
@@ -38,7 +38,8 @@ pub enum DebugView {
 
 impl DebugView {
     /// All views, in the order of their numbers.
-    pub const ALL: [Self; 6] = [Self::Quality, Self::Age, Self::Survival, Self::Rejection, Self::Gate, Self::Motion];
+    pub const ALL: [Self; 6] =
+        [Self::Quality, Self::Age, Self::HistoryShare, Self::Rejection, Self::Agreement, Self::Motion];
 }
 
 /// Decision at a pixel, from which debug views are drawn. `cpu::CpuAfterimage::process_traced` writes it:
@@ -73,9 +74,9 @@ pub struct PixelTrace {
     pub quality: f32,
     /// Frames since the shown sample was shaded, up to 255 ([`DebugView::Age`]).
     pub age: u32,
-    /// History's share, in \[0, 1\] ([`DebugView::Survival`]); 0 without history.
+    /// History's share, in \[0, 1\] ([`DebugView::HistoryShare`]); 0 without history.
     pub history_share: f32,
-    /// Agreement of candidate and history, in \[0, 1\] ([`DebugView::Gate`]); 1 if they look alike.
+    /// Agreement of candidate and history, in \[0, 1\] ([`DebugView::Agreement`]); 1 if they look alike.
     pub agreement: f32,
     /// Whether the candidate replaced the history.
     pub is_replaced: bool,
@@ -144,9 +145,9 @@ pub fn view_color(view: DebugView, trace: &PixelTrace) -> Vec3 {
     let encoded = match view {
         DebugView::Quality => heat(trace.quality),
         DebugView::Age => heat((trace.age as f32 * (1.0 / 255.0)).sqrt()),
-        DebugView::Survival => heat(trace.history_share),
+        DebugView::HistoryShare => heat(trace.history_share),
         DebugView::Rejection => verdict_color(trace.verdict),
-        DebugView::Gate => Vec3::splat(trace.agreement),
+        DebugView::Agreement => Vec3::splat(trace.agreement),
         DebugView::Motion => motion_color(trace.motion),
     };
     Vec3::new(srgb_decode(encoded.x), srgb_decode(encoded.y), srgb_decode(encoded.z))

@@ -26,7 +26,8 @@ const ALBEDO_FLOOR: f32 = 0.04;
 const MOST_QUOTIENT: f32 = 4.0;
 /// Largest number of albedos in a mean, and in one that is read between its texels.
 const MOST_ALBEDOS: [f32; 2] = [29.0, 3.0];
-/// Contrast that albedo must explain in full: a share of that of the colors, and a constant (100 from black to white).
+/// Contrast that albedo must explain in full: a share of the colors' contrast, and a constant (100 from black to
+/// white).
 const EXPLAINED: [f32; 2] = [0.5, 0.1];
 
 /// Albedo of a pixel as the renderer wrote it, limited to what is stored; 0 for NaN.

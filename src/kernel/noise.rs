@@ -71,8 +71,8 @@ pub fn pooled_variance(history: Noise, candidate: Noise) -> f32 {
     (history.samples * history.variance + candidate.samples * candidate.variance) / all
 }
 
-/// Derivative of [`root_difference`](super::color::root_difference) by linear luma, at a luma: that of 100 times its
-/// square root, limited for dark colors.
+/// Derivative of [`root_difference`](super::color::root_difference) by linear luma, at a luma: 50 over its square
+/// root, limited for dark colors.
 #[inline]
 pub fn root_slope(luma: f32) -> f32 {
     50.0 / (luma.max(0.0) + DARK).sqrt()
@@ -110,8 +110,8 @@ pub fn noise_need(history: Noise, luma: f32) -> f32 {
     (slope * slope) * (history.variance / (samples * (samples + 1.0)))
 }
 
-/// Weight of a sample of `samples` paths at a squared distance in pixels, in a mean of samples around a pixel: that of
-/// its paths, less with distance.
+/// Weight of a sample of `samples` paths at a squared distance in pixels, in a mean of samples around a pixel: its
+/// number of paths, less with distance.
 #[inline]
 pub fn noisy_share(samples: f32, px2: f32) -> f32 {
     samples / px2.max(1.0).sqrt()

@@ -96,7 +96,7 @@ pub fn in_turn(x: u32, y: u32, step: u32, turn: u32) -> bool {
 /// The pixel of quad (`x`, `y`) that is tested in a frame: each of the four in four frames. Neighbouring quads
 /// alternate.
 #[inline]
-pub fn asked_px(x: u32, y: u32, frame: u32) -> [u32; 2] {
+pub fn probed_px(x: u32, y: u32, frame: u32) -> [u32; 2] {
     [2 * x + ((frame ^ x ^ y) & 1), 2 * y + (frame >> 1 & 1)]
 }
 
@@ -197,7 +197,7 @@ pub fn known_samples(samples: f32) -> u32 {
     samples.clamp(1.0, MOST_KNOWN) as u32
 }
 
-/// Key of a pixel's path number `path` (from 1 on) in a frame, from that of its first path, `key`; 0 for none. The
+/// Key of a pixel's path number `path` (from 1 on) in a frame, from its first path's, `key`; 0 for none. The
 /// variance V of one sample makes an error V / n of the mean of n `samples` ([`known_samples`]), of which path k takes
 /// V / (n + k - 1) - V / (n + k) = V / ((n + k - 1)(n + k)). The key falls by the binary logarithm of that, in whole
 /// half steps.
@@ -213,9 +213,9 @@ pub fn path_key(key: u32, samples: u32, path: u32) -> u32 {
     if key >= fall + (1 << HASH_BITS) { key - fall } else { 0 }
 }
 
-/// Number of paths of a pixel whose first path has the key `first` and whose further paths have those of
-/// [`path_key`] of `further`: as many as there are keys from `threshold` on. `is_even`: it has its first path in any
-/// case.
+/// Number of paths of a pixel whose first path has the key `first` and whose further paths have the keys that
+/// [`path_key`] makes of `further`: as many as there are keys from `threshold` on. `is_even`: it has its first path in
+/// any case.
 #[inline]
 pub fn paths(first: u32, further: u32, samples: u32, is_even: bool, threshold: u32) -> u32 {
     let mut count = u32::from(is_even || first >= threshold);

@@ -63,7 +63,7 @@ pub fn taps_around(texel: [i32; 2], fraction: [f32; 2], size: [u32; 2]) -> TapsA
     TapsAround { texel, last: size.map(|s| s as i32 - 1), fraction, sharp_x, sharp_y }
 }
 
-/// Sum of the taps' Catmull-Rom weights: 1 without those of the corners.
+/// Sum of the taps' Catmull-Rom weights, the corners left out.
 #[inline]
 pub fn sharp_sum(around: &TapsAround) -> f32 {
     1.0 - (around.sharp_x[0] + around.sharp_x[3]) * (around.sharp_y[0] + around.sharp_y[3])

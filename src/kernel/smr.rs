@@ -34,8 +34,8 @@ const ALIKE_CONTRAST: f32 = 0.5;
 const GAIN: [f32; 2] = [0.2, 5.0];
 /// Least levels of detail that a gain costs: half a stored step, which storage rounds up. A smaller gain would cost
 /// nothing, and is not used.
-const LEAST_WORN: f32 = 0.5 / LOD_STEPS;
-/// Largest channel of compared colors in units of [`brightness_unit`]. At this brightness the units are those of the
+const LEAST_LOST_LOD: f32 = 0.5 / LOD_STEPS;
+/// Largest channel of compared colors in units of [`brightness_unit`]. At this brightness the units are the ones of the
 /// frame, for which the gate's constants were chosen.
 const MIDDLE: f32 = 0.5;
 /// Least brightness that [`brightness_unit`] follows: the smallest normal half. Darker colors are stored in steps that
@@ -217,7 +217,7 @@ pub(crate) fn decide_noted(e: &Evidence, p: &SmrParams, notes: &mut impl Notes) 
     let mut contrast = past_contrast(e.level, e.next_level);
     let mut d = past_difference(e.compared, e.matched);
     let mut k = Vec3::ONE;
-    let mut worn = 0.0;
+    let mut lost_lod = 0.0;
     if p.relight {
         let from = relight_from(contrast, p.blocks, e.noise);
         let share = if may_relight(reuse.finer, p.noisy) { 1.0 } else { 0.0 };
@@ -238,11 +238,11 @@ pub(crate) fn decide_noted(e: &Evidence, p: &SmrParams, notes: &mut impl Notes) 
         notes.note(NoteStage::Light, "change of light", changed, "");
         notes.note(NoteStage::Light, "gains", gains, "");
         notes.note(NoteStage::Light, "coarser difference without and with gains", [unlit, relit], OF_DIFFERENCE);
-        if helps && (p.noisy || doublings >= LEAST_WORN) {
+        if helps && (p.noisy || doublings >= LEAST_LOST_LOD) {
             d = relit;
             k = gains;
             contrast *= strongest.sqrt();
-            worn = if p.noisy { 0.0 } else { doublings };
+            lost_lod = if p.noisy { 0.0 } else { doublings };
         }
     }
     let width = p.accumulate_tolerance + (1.0 - p.accumulate_tolerance) * reuse.finer;
@@ -253,7 +253,7 @@ pub(crate) fn decide_noted(e: &Evidence, p: &SmrParams, notes: &mut impl Notes) 
     let acceptance = fit * e.trust;
     let share = acceptance * reuse.share;
     notes.note(NoteStage::Light, "gains that are used", k, "");
-    notes.note(NoteStage::Light, "levels of detail that they cost", worn, "log2 px");
+    notes.note(NoteStage::Light, "levels of detail that they cost", lost_lod, "log2 px");
     notes.note(NoteStage::Comparison, "difference", d, OF_DIFFERENCE);
     notes.note(NoteStage::Comparison, "contrast of history", contrast, OF_DIFFERENCE);
     notes.note(NoteStage::Comparison, "difference up to which history fits", keep + e.noise, OF_DIFFERENCE);
@@ -270,7 +270,7 @@ pub(crate) fn decide_noted(e: &Evidence, p: &SmrParams, notes: &mut impl Notes) 
     // A share of 1 gives history bit for bit, a share of 0 the candidate.
     let color = if share == 1.0 { history } else { e.candidate + (history - e.candidate) * share };
     let lod = if reuse.finer > 0.0 {
-        ((e.history_lod + (e.lod - e.history_lod) * (1.0 - reuse.finer * acceptance)) + worn).min(e.lod)
+        ((e.history_lod + (e.lod - e.history_lod) * (1.0 - reuse.finer * acceptance)) + lost_lod).min(e.lod)
     } else if p.noisy {
         e.lod + (e.history_lod - e.lod).max(0.0) * share
     } else {

@@ -98,7 +98,7 @@ pub(crate) enum Algorithm {
     Taa,
     Taau,
     Smr,
-    SmrSparse,
+    Reconstruction,
     Wrs,
 }
 
@@ -183,7 +183,7 @@ pub(crate) enum HistoryLayout {
 }
 
 impl Settings {
-    /// The entry of these settings. smr on planned frames is an algorithm of its own.
+    /// The entry of these settings. On planned frames, smr stands for their reconstruction.
     fn entry(&self) -> &'static Entry {
         match self.method {
             Method::Smr(_) if self.foveation.filter == Filter::Quads => &planned::ENTRY,

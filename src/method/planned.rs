@@ -1,13 +1,13 @@
-//! Scale-matched reservoirs of planned frames. The algorithm differs from that of whole frames. It keeps samples with
-//! their places, compares the samples with history first, and reconstructs the pixels between them.
+//! Temporal reconstruction of planned frames: keeps samples with their places, compares the new ones with history
+//! first, and reconstructs the pixels between them.
 
 use super::{Algorithm, Entry, HistoryLayout, PassShader, Stage};
 use crate::settings::Settings;
 
 pub(super) static ENTRY: Entry = Entry {
-    name: "smr-sparse",
-    summary: "scale-matched reservoirs of planned frames",
-    algorithm: Algorithm::SmrSparse,
+    name: "reconstruction",
+    summary: "temporal reconstruction of planned frames",
+    algorithm: Algorithm::Reconstruction,
     stages: |_| vec![Stage::Quads, Stage::Method],
     history: |settings| HistoryLayout::Sparse { noisy: settings.noisy, means: antialiases(settings) },
     history_traffic_bytes: |settings| {

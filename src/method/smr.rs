@@ -8,7 +8,7 @@ use crate::settings::Settings;
 
 pub(super) static ENTRY: Entry = Entry {
     name: "smr",
-    summary: "scale-matched reservoirs",
+    summary: "scale-matched reservoirs; of planned frames, temporal reconstruction",
     algorithm: Algorithm::Smr,
     stages: |settings| match settings.noisy {
         true => vec![Stage::Candidates, Stage::Method, Stage::MipChain],

@@ -151,8 +151,8 @@ pub struct Settings {
     pub foveation: Foveation,
     /// Depth test; `None` compares no depths. Default on.
     pub depth_test: Option<DepthTest>,
-    /// Whether frames are noisy, as [`levels::Settings::noisy`](crate::levels::Settings::noisy). On planned frames smr
-    /// compares means of samples, stores 8 more bytes a pixel but no mip chain, and does not relight history. Default
+    /// Whether frames are noisy, as [`levels::Settings::noisy`](crate::levels::Settings::noisy). The reconstruction of
+    /// planned frames then compares means of samples, stores 8 more bytes a pixel and does not relight history. Default
     /// false.
     pub noisy: bool,
     /// Seed of the random numbers. The same seed and the same frames give the same bytes. Default 0.
@@ -197,7 +197,7 @@ impl Settings {
         Self { method: Method::Smr(Smr::traced()), noisy: true, ..Self::default() }
     }
 
-    /// smr on antialiased frames shaded by quads ([`Filter::Quads`](crate::internal::Filter::Quads)), for screens about
+    /// Antialiased frames shaded by quads ([`Filter::Quads`](crate::internal::Filter::Quads)), for screens about
     /// 40 degrees wide: a coarser even pattern and twice the budget of [`Foveation::quads`], 11 % of the pixels. Frames
     /// must be jittered ([`Foveation::jitter_px`]). `docs/quads.md` has the scores.
     pub fn screen() -> Self {

@@ -67,10 +67,9 @@ pub enum GateScale {
     #[default]
     Sample,
     /// Compares the candidate with a reference that is stored beside the sample: the first candidate of the same level
-    /// of detail since the sample was taken. The gate closes only where something changed. The level is that of the
-    /// frame's input `lod`, or of [`Settings::foveation`](super::Settings::foveation) without that; on planned frames
-    /// that of a sample at its own pixel.
-    /// Needs 8 more bytes of memory and of memory traffic a pixel.
+    /// of detail since the sample was taken. The gate closes only where something changed. The level is the frame's
+    /// input `lod`, or the level of [`Settings::foveation`](super::Settings::foveation) without that; on planned frames
+    /// that of a sample at its own pixel. Needs 8 more bytes of memory and of memory traffic a pixel.
     Candidate,
 }
 

@@ -208,7 +208,7 @@ pub fn planned_flash(make: Make<'_>) -> Option<String> {
     }
     assert!(most <= 8, "{most}");
     Some(format!(
-        "smr on planned frames, by single pixels and by quads, steady gaze: a lamp of one frame leaves {most} px more off by 0.05 after 4 \
+        "planned frames, by single pixels and by quads, steady gaze: a lamp of one frame leaves {most} px more off by 0.05 after 4 \
          frames with relighting than without"
     ))
 }

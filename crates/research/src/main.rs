@@ -39,7 +39,7 @@ enum Experiment {
     Growth(growth::GrowthArgs),
     Isa(isa::IsaArgs),
     /// Foveated and uniform path tracing, as measured in two papers: Markdown tables with their results, ours, and
-    /// those of planned frames with smr
+    /// those of planned frames
     Papers(TracedArgs),
     Patterns(Box<patterns::PatternsArgs>),
     Safeguards(safeguards::SafeguardsArgs),

@@ -92,7 +92,7 @@ struct Compared {
     paper_time_reduction: Option<f64>,
     /// The paper's time reduction divided by the ideal reduction on its display.
     paper_share_of_ideal: Option<f64>,
-    /// The pattern's frames beside planned frames with smr. Layers: without a lens.
+    /// The pattern's frames beside planned frames. Layers: without a lens.
     #[serde(flatten)]
     comparison: Comparison,
 }
@@ -300,7 +300,7 @@ fn print_layers(scenes: &[PapersSceneReport]) {
 }
 
 /// Header of [`compared`].
-const COMPARED_HEAD: &str = "| filled: dB, FLIP, ms | planned + smr: dB, FLIP, ms |";
+const COMPARED_HEAD: &str = "| filled: dB, FLIP, ms | planned: dB, FLIP, ms |";
 
 /// The two last columns of both tables.
 fn compared(comparison: &Comparison) -> String {

@@ -63,13 +63,13 @@ fn puts_the_papers_figures_beside_ours() {
     // Sparse frames with smr beside all of them, with about as many samples.
     let of_layers = layers.iter().flat_map(|scene| scene["patterns"].as_array().unwrap());
     for p in regions.iter().chain(of_layers) {
-        for kind in ["filled", "sparse_smr"] {
+        for kind in ["filled", "planned_smr"] {
             let of = |key: &str| p[kind][key].as_f64().unwrap_or_else(|| panic!("{kind}.{key} of {p}"));
             // No error at all has no PSNR.
             let psnr_db = p[kind]["psnr_db"].as_f64().unwrap_or(f64::INFINITY);
             assert!(psnr_db > 5.0 && (0.0..1.0).contains(&of("flip")) && of("samples") > 0.0, "{p}");
             assert!((of("render_ms") + of("post_ms") - of("total_ms")).abs() < 1e-9 && of("render_ms") > 0.0, "{p}");
-            assert_eq!(of("post_ms") > 0.0, kind == "sparse_smr");
+            assert_eq!(of("post_ms") > 0.0, kind == "planned_smr");
         }
     }
     refuses(&["papers", "--frames", "0"], &["1 to"]);

@@ -6,8 +6,8 @@ use crate::kernel::demodulation::{
     LumaRanges, OwnAlbedo, Retextured, between, explained, given_albedo, kept_albedos, limited_albedo, no_lumas,
     past_albedo, retextured, unpack_albedo, with_luma,
 };
+use crate::kernel::reconstruction::Reconstructed;
 use crate::kernel::rng;
-use crate::kernel::sparse_smr::Reconstructed;
 use crate::kernel::stored_sample::{Around, StoredSample, interpolate, stored_weight};
 use glam::{Vec2, Vec3, Vec4};
 

@@ -5,11 +5,11 @@ use super::view::View;
 use crate::cpu::quads::Quads;
 use crate::kernel::antialias::{
     Averaged, MOST_DIFFERENCE, Mean, Near, add_near, average, byte_draws, centred_change, clip, clipped, is_edge,
-    is_silhouette, is_thin, kept_samples, move_together, stands_before, stored_lod, surrounds_centre,
+    is_in_front, is_silhouette, is_thin, kept_samples, move_together, stored_lod, surrounds_centre,
 };
 use crate::kernel::color::root_difference;
+use crate::kernel::reconstruction::{Reconstruction, relit};
 use crate::kernel::rng;
-use crate::kernel::sparse_smr::{Reconstruction, relit};
 use crate::kernel::stored_sample::{StoredSample, has_moved, pack_color_by, pack_stored};
 use crate::notes::{NoteStage, Notes};
 use glam::{Vec2, Vec3};
@@ -21,7 +21,7 @@ impl View<'_> {
         -Vec2::from(self.inputs.uniforms.jitter_px)
     }
 
-    /// The surface whose history a pixel continues: the nearest surface around it if [`stands_before`] is true,
+    /// The surface whose history a pixel continues: the nearest surface around it if [`is_in_front`] is true,
     /// otherwise its own. `level`: of its region.
     #[inline(always)]
     pub(super) fn surface(&self, [x, y]: [u32; 2], level: u32) -> Surroundings {
@@ -67,7 +67,7 @@ impl View<'_> {
         // Still edges have long means of their own samples. Others would make them worse.
         let is_moving_edge = edge && level > 0 && has_moved(own_px, nearest_px);
         let mut surface = Surroundings { is_edge: edge, is_moving_edge, ..alone };
-        if stands_before(own, nearest, own_px, nearest_px, level == 0) {
+        if is_in_front(own, nearest, own_px, nearest_px, level == 0) {
             let moved_px = self.inputs.moved_px(nearest_at, nearest, motion);
             surface = Surroundings { disparity: nearest, motion, stored: nearest, moved_px, ..surface };
         }

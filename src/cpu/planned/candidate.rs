@@ -1,10 +1,10 @@
-//! Candidate of a pixel: the samples around it, and their light.
+//! Candidate of a pixel: the samples around it, and the rectification of history at them.
 
 use super::view::NO_NOISE;
 use crate::kernel::candidate::{Borrowed, SampleSums, borrow_around, is_beside, sample_mean};
 use crate::kernel::demodulation::AlbedoChange;
 use crate::kernel::noise::Noise;
-use crate::kernel::sparse_smr::{Lit, Observation};
+use crate::kernel::reconstruction::{Observation, Rectification};
 use crate::notes::{NoteStage, Notes};
 use glam::{Vec3, Vec4};
 
@@ -52,14 +52,14 @@ impl Candidate {
             return Self::NONE;
         }
         let mean = sample_mean(sums, coarsest);
-        let (color, alpha, own_fit) = own.unwrap_or((mean.color, mean.alpha, 1.0));
+        let (color, alpha, center_fit) = own.unwrap_or((mean.color, mean.alpha, 1.0));
         Self {
             color,
             usable: true,
             lod: if own.is_some() { 0.0 } else { mean.lod },
             range: [sums.lowest, sums.highest],
             gain: mean.gain,
-            fit: mean.fit.min(own_fit),
+            fit: mean.fit.min(center_fit),
             alpha,
             is_own: own.is_some(),
             beside: is_beside(sums).then_some(sums.beside),
@@ -100,18 +100,18 @@ impl Candidate {
     }
 }
 
-/// A sample around a pixel, its light, and its comparison with history.
+/// A sample around a pixel, the rectification at it, and its comparison with history.
 pub(super) fn note_sample(
     notes: &mut impl Notes,
     [x, y]: [u32; 2],
     weight: f32,
     color: Vec3,
-    lit: Lit,
+    r: Rectification,
     observed: Option<Observation>,
 ) {
     let values = [x as f32, y as f32, weight, color.x, color.y, color.z];
     notes.note(NoteStage::Candidate, "sample", values, "x y px, weight, linear light");
-    let values = [x as f32, y as f32, lit.gain.x, lit.gain.y, lit.gain.z, lit.fit, lit.own_fit];
+    let values = [x as f32, y as f32, r.gain.x, r.gain.y, r.gain.z, r.fit, r.center_fit];
     notes.note(NoteStage::Light, "sample", values, "x y px, gain, fit around it, fit of its own");
     if let Some(Observation { history, error, confidence, .. }) = observed {
         let values = [x as f32, y as f32, history.x, history.y, history.z, error, confidence];

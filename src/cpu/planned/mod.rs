@@ -1,5 +1,5 @@
-//! Reconstruction of planned frames from history that keeps samples in their places (smr). Its mathematics is in
-//! `src/kernel/{stored_sample,sparse_smr}.rs`.
+//! Reconstruction of planned frames from history that keeps samples in their places. Its mathematics is in
+//! `src/kernel/{stored_sample,reconstruction}.rs`.
 //!
 //! Three loops. The first compares each sample outside the fovea with history at its pixel. The second estimates gain
 //! and fit for each shaded quad, from its own comparisons and from those of the eight quads around it. The third
@@ -9,12 +9,12 @@
 mod albedo;
 mod antialias;
 mod candidate;
-mod light;
 mod observe;
 mod pixel;
 mod plan;
 mod quad_plan;
 mod quad_samples;
+mod rectification;
 mod sparse_history;
 mod view;
 
@@ -27,7 +27,7 @@ use crate::cpu::inputs::Inputs;
 use crate::cpu::pass::Pass;
 use crate::cpu::pixel::{AlphaTargets, Targets, for_pixels};
 use crate::stats::FrameStats;
-use pixel::LitView;
+use pixel::RectifiedView;
 use view::{GivenAlbedo, GivenAlpha, View};
 
 /// Runs the three loops for every view.
@@ -45,11 +45,11 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
         let traces = traces.as_mut().map(|t| &mut t[i]);
         let alpha = alpha.as_mut().map(|alpha| AlphaTargets { stored, output: &mut alpha.output[i] });
         let targets = Targets { surfaces, noise, albedo, output: &mut output[i], alpha, traces };
-        let lights = view.light_quads(quads, &view.observe_quads(quads));
-        let lit = LitView { view: &view, quads, lights: &lights };
-        stats = stats.add(for_pixels(targets, &lit));
+        let rectified = view.rectify_quads(quads, &view.observe_quads(quads));
+        let rectified = RectifiedView { view: &view, quads, rectified: &rectified };
+        stats = stats.add(for_pixels(targets, &rectified));
         if let Some(pixel) = of_view(&mut noted, i) {
-            explain(&lit, if view.antialiases { note_stored_mean } else { note_stored }, pixel);
+            explain(&rectified, if view.antialiases { note_stored_mean } else { note_stored }, pixel);
         }
     }
     stats

@@ -6,7 +6,7 @@ use crate::kernel::antialias::{Mean, expected_mean_error};
 use crate::kernel::color::luma;
 use crate::kernel::color::root_difference;
 use crate::kernel::noise::expected_noise;
-use crate::kernel::sparse_smr::{Observation, expected_error, lod_confidence, noisy_lod_confidence};
+use crate::kernel::reconstruction::{Observation, expected_error, lod_confidence, noisy_lod_confidence};
 use crate::kernel::stored_sample::has_moved;
 use crate::notes::NoNotes;
 use glam::{Vec2, Vec3};

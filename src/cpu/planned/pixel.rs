@@ -1,32 +1,37 @@
-//! Reconstruction of pixels from history, and from the samples around them and their light.
+//! Reconstruction of pixels from history, and from the samples around them.
 
 use super::albedo::Untextured;
-use super::quad_samples::QuadLights;
-use super::sparse_history::{Found, Source};
+use super::candidate::Candidate;
+use super::quad_samples::RectifiedQuads;
+use super::sparse_history::{Found, Source, Surroundings};
 use super::view::{NO_NOISE, View};
 use crate::cpu::pixel::{Pixel, ProcessPixel};
 use crate::cpu::quads::Quads;
-use crate::kernel::antialias::{Mean, average_beside, expected_mean_error, stored_mean, with_regular_run};
+use crate::kernel::antialias::{
+    Averaged, Mean, Near, average_beside, expected_mean_error, stored_mean, with_regular_run,
+};
 use crate::kernel::approx;
 use crate::kernel::color::root_difference;
 use crate::kernel::debug_view::PixelTrace;
-use crate::kernel::noise::pack_noise;
+use crate::kernel::noise::{Noise, pack_noise};
+use crate::kernel::reconstruction::{
+    Reconstructed, Reconstruction, accumulate, lod_loss_per_stop, reconstruct, relit, result_alpha,
+};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::sanitize;
-use crate::kernel::sparse_smr::{Reconstructed, Reconstruction, accumulate, reconstruct, relit, result_alpha, worn};
-use crate::kernel::stored_sample::{StoredSample, has_moved, pack_stored, with_motion};
+use crate::kernel::stored_sample::{Interpolated, StoredSample, has_moved, pack_stored, with_motion};
 use crate::notes::{NoteStage, Notes};
 use crate::stats::FrameStats;
 use glam::{Vec2, Vec3};
 
-/// A view, its shaded quads, and the light at them.
-pub(super) struct LitView<'a> {
+/// A view, its shaded quads, and the rectification of history at them.
+pub(super) struct RectifiedView<'a> {
     pub view: &'a View<'a>,
     pub quads: &'a Quads,
-    pub lights: &'a QuadLights,
+    pub rectified: &'a RectifiedQuads,
 }
 
-impl ProcessPixel for LitView<'_> {
+impl ProcessPixel for RectifiedView<'_> {
     #[inline(always)]
     fn process(&self, x: u32, y: u32, stats: &mut FrameStats, notes: &mut impl Notes) -> Pixel {
         let pixel = self.pixel(x, y, stats, notes);
@@ -34,10 +39,10 @@ impl ProcessPixel for LitView<'_> {
     }
 }
 
-impl LitView<'_> {
+impl RectifiedView<'_> {
     #[inline(always)]
     fn pixel<N: Notes>(&self, x: u32, y: u32, stats: &mut FrameStats, notes: &mut N) -> Pixel {
-        let Self { view, quads, lights } = *self;
+        let Self { view, quads, rectified } = *self;
         let inputs = &view.inputs;
         if !inputs.is_visible(x, y) {
             // Outside the visible area: black, without stored history.
@@ -47,7 +52,7 @@ impl LitView<'_> {
         }
         let disparity = inputs.disparity(x, y);
         let level = quads.level_at([x, y]);
-        let mut candidate = view.quad_candidate(quads, [x, y], disparity, lights, notes);
+        let mut candidate = view.quad_candidate(quads, [x, y], disparity, rectified, notes);
         let surface = view.surface([x, y], level);
         candidate.note(notes);
         surface.note(notes);
@@ -71,84 +76,18 @@ impl LitView<'_> {
 
         let is_near = view.antialiases && candidate.is_own && level == 0;
         let near = is_near.then(|| view.near(quads, [x, y], candidate.color));
-        // Without history the samples around antialias alone.
-        let change = view.centred_change(near);
-        let mut output = candidate.color + change.unwrap_or(Vec3::ZERO);
-        if change.is_some() {
-            notes.note(NoteStage::Candidate, "samples around at the pixel's centre", output, "linear light");
-        }
-        let is_placed = view.antialiases && candidate.is_own && change.is_none();
-        let mut stored = StoredSample {
-            color: output,
-            lod: if candidate.usable { candidate.lod } else { -1.0 },
-            disparity: surface.stored,
-            place_px: if is_placed { view.sample_place_px() } else { Vec2::ZERO },
-        };
-        let mut mean = Mean::ONE;
-        let (mut share, mut fits) = (0.0, 1.0);
-        let mut noise = candidate.noise;
-        // To show, and to store.
-        let mut alpha = [candidate.alpha; 2];
-        let mut albedos = None;
-        let mut result = Reconstructed { color: output, stored, share: 0.0, keeps_nearest: false, stored_share: 0.0 };
-        if let (Ok(Source { previous, .. }), Some(found)) = (source, history) {
-            let Found { history, noise: past, mean: past_mean, alpha: past_alpha, albedos: past_albedos } = found;
-            albedos = past_albedos;
-            if !candidate.usable {
-                (output, share, noise, mean, alpha) = (history.color, 1.0, past, past_mean, past_alpha);
-                stored = StoredSample { disparity: surface.stored, ..history.nearest };
-                result = Reconstructed { color: output, stored, share, keeps_nearest: true, stored_share: 1.0 };
-            } else {
-                let moved = match view.antialiases {
-                    true => has_moved(surface.motion.into(), Vec2::ZERO),
-                    false => has_moved(Vec2::ZERO, history.nearest.place_px),
-                };
-                let inputs = Reconstruction {
-                    candidate: candidate.color,
-                    lod: candidate.lod,
-                    range: candidate.range,
-                    history: history.color,
-                    history_lod: history.lod,
-                    nearest: history.nearest,
-                    worn: worn(moved, view.antialiases),
-                    gain: candidate.gain,
-                    fit: candidate.fit,
-                    trust: previous.trust,
-                    accumulate: view.accumulate,
-                };
-                if N::ON {
-                    let history = relit(inputs.history, inputs.gain, inputs.range);
-                    notes.note(NoteStage::Light, "history after the gain", history, "linear light");
-                    notes.note(NoteStage::Decision, "fit", inputs.fit, "");
-                }
-                result = if view.is_noisy {
-                    let accumulated = accumulate(&inputs, past, candidate.noise);
-                    noise = accumulated.noise;
-                    accumulated.result
-                } else if view.antialiases {
-                    let contrast = root_difference(history.range[0], history.range[1]);
-                    let error = expected_mean_error(past_mean, contrast, moved);
-                    let beside = candidate.beside.filter(|_| surface.is_moving_edge && inputs.nearest.lod <= 0.0);
-                    let averaged = if candidate.is_own {
-                        let past = with_regular_run(past_mean, level);
-                        view.averaged(near, surface.is_moving_edge, inputs, past, error, notes)
-                    } else if let Some(beside) = beside {
-                        notes.note(NoteStage::Decision, "sample beside the pixel", beside, "linear light");
-                        let inputs = Reconstruction { candidate: beside, ..inputs };
-                        average_beside(&inputs, past_mean, view.sample_place_px())
-                    } else {
-                        stored_mean(&inputs, reconstruct(&inputs), past_mean)
-                    };
-                    mean = averaged.mean;
-                    averaged.result
-                } else {
-                    reconstruct(&inputs)
-                };
-                alpha = result_alpha(result, candidate.alpha, past_alpha[0], past_alpha[1]).into();
-                (output, share, fits) = (result.color, result.share, candidate.fit);
-                stored = StoredSample { disparity: surface.stored, ..result.stored };
+        let mut pixel = match (source, &history) {
+            (Ok(source), Some(past)) if candidate.usable => {
+                let pixel = WithHistory { view, level, surface: &surface, past, candidate: &candidate, near };
+                pixel.blend(source.previous.trust, notes)
             }
-        }
+            (_, Some(past)) => history_alone(past),
+            _ => candidate_alone(view, &candidate, near, notes),
+        };
+        pixel.result.stored.disparity = surface.stored;
+        let Resolved { result, mean, noise, alpha, fit } = pixel;
+        let (mut output, mut stored, share) = (result.color, result.stored, result.share);
+        let albedos = history.and_then(|past| past.albedos);
         let (of_candidate, samples) = (candidate.albedo.albedo, mean.samples);
         let retextured = view.retexture(&Untextured {
             px: [x, y],
@@ -173,7 +112,7 @@ impl LitView<'_> {
             quality: approx::exp2_approx(-stored.lod.max(0.0)),
             age: 0,
             history_share: share,
-            agreement: fits,
+            agreement: fit,
             is_replaced: share == 0.0,
             motion: surface.motion,
         };
@@ -181,5 +120,115 @@ impl LitView<'_> {
         let stored = with_motion(stored, surface.moved_px);
         let albedo = retextured.map_or(0, |texture| texture.word);
         Pixel { output, surface: stored, noise: pack_noise(noise), alpha, albedo, trace }
+    }
+}
+
+/// What a pixel shows and stores, in frames with albedo still with the texture of its samples.
+struct Resolved {
+    result: Reconstructed,
+    mean: Mean,
+    noise: Noise,
+    /// To show, and to store.
+    alpha: [f32; 2],
+    fit: f32,
+}
+
+/// A pixel without history: its candidate.
+#[inline(always)]
+fn candidate_alone(view: &View, candidate: &Candidate, near: Option<Near>, notes: &mut impl Notes) -> Resolved {
+    // The samples around antialias alone.
+    let change = view.centred_change(near);
+    let color = candidate.color + change.unwrap_or(Vec3::ZERO);
+    if change.is_some() {
+        notes.note(NoteStage::Candidate, "samples around at the pixel's centre", color, "linear light");
+    }
+    let is_placed = view.antialiases && candidate.is_own && change.is_none();
+    let stored = StoredSample {
+        color,
+        lod: if candidate.usable { candidate.lod } else { -1.0 },
+        disparity: -1.0,
+        place_px: if is_placed { view.sample_place_px() } else { Vec2::ZERO },
+    };
+    let result = Reconstructed { color, stored, share: 0.0, keeps_nearest: false, stored_share: 0.0 };
+    Resolved { result, mean: Mean::ONE, noise: candidate.noise, alpha: [candidate.alpha; 2], fit: 1.0 }
+}
+
+/// A pixel without a usable candidate: its history.
+#[inline(always)]
+fn history_alone(past: &Found) -> Resolved {
+    let Interpolated { color, nearest: stored, .. } = past.history;
+    let result = Reconstructed { color, stored, share: 1.0, keeps_nearest: true, stored_share: 1.0 };
+    Resolved { result, mean: past.mean, noise: past.noise, alpha: past.alpha, fit: 1.0 }
+}
+
+/// A pixel with history and a usable candidate.
+struct WithHistory<'a> {
+    view: &'a View<'a>,
+    level: u32,
+    surface: &'a Surroundings,
+    past: &'a Found,
+    candidate: &'a Candidate,
+    /// Sums over the samples around a pixel of the fovea.
+    near: Option<Near>,
+}
+
+impl WithHistory<'_> {
+    /// History, relit, blended with the candidate. `trust`: trust in history.
+    #[inline(always)]
+    fn blend<N: Notes>(&self, trust: f32, notes: &mut N) -> Resolved {
+        let Self { view, past, candidate, .. } = *self;
+        let history = &past.history;
+        let moved = match view.antialiases {
+            true => has_moved(self.surface.motion.into(), Vec2::ZERO),
+            false => has_moved(Vec2::ZERO, history.nearest.place_px),
+        };
+        let inputs = Reconstruction {
+            candidate: candidate.color,
+            lod: candidate.lod,
+            range: candidate.range,
+            history: history.color,
+            history_lod: history.lod,
+            nearest: history.nearest,
+            lod_loss_per_stop: lod_loss_per_stop(moved, view.antialiases),
+            gain: candidate.gain,
+            fit: candidate.fit,
+            trust,
+            accumulate: view.accumulate,
+        };
+        if N::ON {
+            let history = relit(inputs.history, inputs.gain, inputs.range);
+            notes.note(NoteStage::Light, "history after the gain", history, "linear light");
+            notes.note(NoteStage::Decision, "fit", inputs.fit, "");
+        }
+        let (result, mean, noise) = if view.is_noisy {
+            let accumulated = accumulate(&inputs, past.noise, candidate.noise);
+            (accumulated.result, Mean::ONE, accumulated.noise)
+        } else if view.antialiases {
+            let averaged = self.antialiased(inputs, moved, notes);
+            (averaged.result, averaged.mean, candidate.noise)
+        } else {
+            (reconstruct(&inputs), Mean::ONE, candidate.noise)
+        };
+        let alpha = result_alpha(result, candidate.alpha, past.alpha[0], past.alpha[1]).into();
+        Resolved { result, mean, noise, alpha, fit: candidate.fit }
+    }
+
+    /// The blend of jittered frames.
+    #[inline(always)]
+    fn antialiased(&self, inputs: Reconstruction, moved: bool, notes: &mut impl Notes) -> Averaged {
+        let Self { view, past, candidate, .. } = *self;
+        let at_edge = self.surface.is_moving_edge;
+        if candidate.is_own {
+            let contrast = root_difference(past.history.range[0], past.history.range[1]);
+            let error = expected_mean_error(past.mean, contrast, moved);
+            let mean = with_regular_run(past.mean, self.level);
+            return view.averaged(self.near, at_edge, inputs, mean, error, notes);
+        }
+        if let Some(beside) = candidate.beside.filter(|_| at_edge && inputs.nearest.lod <= 0.0) {
+            notes.note(NoteStage::Decision, "sample beside the pixel", beside, "linear light");
+            let inputs = Reconstruction { candidate: beside, ..inputs };
+            return average_beside(&inputs, past.mean, view.sample_place_px());
+        }
+        stored_mean(&inputs, reconstruct(&inputs), past.mean)
     }
 }

@@ -17,8 +17,9 @@ use crate::kernel::color::root_difference;
 use crate::kernel::noise::{Noise, NoiseSum, add_noise, mean_noise, noise_need};
 use crate::kernel::pack::tap_codes;
 use crate::kernel::quads::{
-    ENOUGH_SAMPLES, IN_FOVEA, IN_MIDDLE, IN_PERIPHERY, KEYS, MOST_PATHS, WHOLE, acuity, asked_px, in_pattern, in_turn,
-    known_samples, need, no_history_need, path_key, paths, place_in_quad, quad_key, region, share_in_block, threshold,
+    ENOUGH_SAMPLES, IN_FOVEA, IN_MIDDLE, IN_PERIPHERY, KEYS, MOST_PATHS, WHOLE, acuity, in_pattern, in_turn,
+    known_samples, need, no_history_need, path_key, paths, place_in_quad, probed_px, quad_key, region, share_in_block,
+    threshold,
 };
 use crate::kernel::sanitize;
 use crate::kernel::stored_sample::{is_empty, unpack_full};
@@ -89,11 +90,11 @@ impl View<'_> {
         let needs = Image::from_fn_parallel(size, |quad| {
             let [x, y] = quad.map(|v| v as usize);
             let is_even = even.at(x, y);
-            let is_asked = regions.at(x, y) != IN_FOVEA && (!is_even || self.is_noisy);
-            if !has_memory || !has_budget || !is_asked {
+            let is_probed = regions.at(x, y) != IN_FOVEA && (!is_even || self.is_noisy);
+            if !has_memory || !has_budget || !is_probed {
                 return Need::default();
             }
-            let place = if is_even { pattern.place(regions.at(x, y)) } else { place_in_quad(self.asked(quad)) };
+            let place = if is_even { pattern.place(regions.at(x, y)) } else { place_in_quad(self.probed(quad)) };
             let need = self.need_of(quad, place, first);
             Need { first: if is_even { 0.0 } else { need.first }, ..need }
         });
@@ -126,7 +127,7 @@ impl View<'_> {
             } else if even.at(x, y) {
                 1 << pattern.place(region)
             } else {
-                1 << place_in_quad(asked_px(quad[0], quad[1], self.frame_low))
+                1 << place_in_quad(probed_px(quad[0], quad[1], self.frame_low))
             }
         });
         let of_quads = Image::from_fn_parallel(size, |[x, y]| {
@@ -137,8 +138,8 @@ impl View<'_> {
     }
 
     /// The pixel of a quad that is tested.
-    fn asked(&self, [x, y]: [u32; 2]) -> [u32; 2] {
-        asked_px(x, y, self.frame_low)
+    fn probed(&self, [x, y]: [u32; 2]) -> [u32; 2] {
+        probed_px(x, y, self.frame_low)
     }
 
     /// Whether the lens shows a pixel of a quad; with `place`, that pixel.
@@ -188,7 +189,7 @@ impl View<'_> {
         for tap in 0..4 {
             let [tx, ty] = [first[0] + (tap & 1) as f32, first[1] + (tap >> 1) as f32];
             let words = self.stored_words(tx as i32, ty as i32);
-            if is_empty(words) || !self.may_show(words, codes, moved_px) {
+            if is_empty(words) || !self.is_reusable(words, codes, moved_px) {
                 continue;
             }
             let stored = unpack_full(words);
@@ -209,7 +210,7 @@ impl View<'_> {
         if self.is_noisy {
             let (texel, color) = nearest;
             let own = self.stored_noise(texel);
-            // The variance of few samples is uncertain, therefore that of all four.
+            // The variance of few samples is uncertain: the mean of all four takes its place.
             let past = Noise { variance: mean_noise(noises).variance, ..own };
             let noise = noise_need(past, luma(expose(color, self.inputs.exposure)));
             let first = need(best.1, ENOUGH_SAMPLES, root_difference(low, high));

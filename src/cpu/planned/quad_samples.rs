@@ -1,7 +1,7 @@
 //! Samples of shaded quads: their comparison with history, gain and fit around them, and candidates of pixels.
 
 use super::candidate::{Candidate, note_sample};
-use super::light::{Neighbour, observed_around, votes};
+use super::rectification::{Neighbour, observed_around, votes};
 use super::view::{Samples, View};
 use crate::cpu::quads::{Quads, offset_px2};
 use crate::kernel::candidate::{
@@ -12,18 +12,18 @@ use crate::kernel::depth::INVALID_DISPARITY;
 use crate::kernel::noise::{NoiseSum, add_noise, mean_noise};
 use crate::kernel::pack::has_code;
 use crate::kernel::quads::WHOLE;
-use crate::kernel::sanitize;
-use crate::kernel::sparse_smr::{
-    LIGHT_RELATIVE, Observation, QuadLit, add_observation, fit_around, fit_by_votes, is_observed, mean_observation,
-    neighbour_weight, no_observation, noisy_fit_around, none_around, own_fit, pack_observation, pack_quad_lit,
-    quad_code, quad_lit, spatial_weight, unpack_observation,
+use crate::kernel::reconstruction::{
+    LIGHT_RELATIVE, Observation, QuadRectification, add_observation, center_fit, fit_around, fit_by_votes, is_observed,
+    mean_observation, neighbour_weight, no_observation, noisy_fit_around, none_around, pack_observation,
+    pack_rectification, quad_code, spatial_weight, unpack_observation, unpack_rectification,
 };
+use crate::kernel::sanitize;
 use crate::notes::Notes;
 use crate::parallel::collect;
 use glam::{Vec3, Vec4};
 
-/// Light of the shaded quads, quad by quad ([`pack_quad_lit`]).
-pub(super) type QuadLights = Vec<[u32; 4]>;
+/// Rectification of history at the shaded quads, quad by quad ([`pack_rectification`]).
+pub(super) type RectifiedQuads = Vec<[u32; 4]>;
 
 impl View<'_> {
     /// Pixels of a quad inside the frame.
@@ -61,16 +61,16 @@ impl View<'_> {
     }
 
     /// Gain and fit around each shaded quad. Quads of the fovea are not compared.
-    pub(super) fn light_quads(&self, quads: &Quads, observed: &Samples) -> QuadLights {
+    pub(super) fn rectify_quads(&self, quads: &Quads, observed: &Samples) -> RectifiedQuads {
         let [columns, rows] = quads.size();
         collect(columns * rows, |i| {
             let quad = [i % columns, i / columns];
-            if quads.mask(quad) != 0 { self.light_quad(quads, quad, observed) } else { [0; 4] }
+            if quads.mask(quad) != 0 { self.rectify_quad(quads, quad, observed) } else { [0; 4] }
         })
     }
 
-    fn light_quad(&self, quads: &Quads, quad: [u32; 2], observed: &Samples) -> [u32; 4] {
-        // The quad's own comparison is a mean of those of one surface: that of its first compared pixel.
+    fn rectify_quad(&self, quads: &Quads, quad: [u32; 2], observed: &Samples) -> [u32; 4] {
+        // The quad's own comparison is the mean over the surface of its first compared pixel.
         let first = self.pixels_of(quad).find(|&px| self.observation_px(quads, px, observed).is_some());
         let disparity_of = |[x, y]: [u32; 2]| self.inputs.disparity(x, y);
         let disparity = disparity_of(first.unwrap_or(quad.map(|v| 2 * v)));
@@ -106,7 +106,7 @@ impl View<'_> {
         let near = || near.iter().copied();
         let around = observed_around(near());
         // A single noisy sample does not show whether history fits.
-        let fit_of_own = |o, gain| if self.is_noisy { 1.0 } else { own_fit(o, gain) };
+        let fit_of_own = |o, gain| if self.is_noisy { 1.0 } else { center_fit(o, gain) };
         let (mut gain, mut fits) = (Vec3::ONE, 1.0);
         if around.weight >= 1e-6 {
             let (relit, left) = self.relit_around(around, near);
@@ -114,18 +114,18 @@ impl View<'_> {
             fits = if self.is_noisy {
                 noisy_fit_around(around, left)
             } else {
-                let fit_of_quad = if is_own { own_fit(own, Vec3::ONE) } else { 0.0 };
+                let fit_of_quad = if is_own { center_fit(own, Vec3::ONE) } else { 0.0 };
                 fit_around(around, left, fit_by_votes(around, votes(near().take(others)), fit_of_quad))
             };
         }
-        let mut own_fits = [1.0; 4];
+        let mut center_fits = [1.0; 4];
         let mut disparities = [INVALID_DISPARITY; 4];
         for px in self.pixels_of(quad) {
             let i = (px[0] & 1 | (px[1] & 1) << 1) as usize;
-            own_fits[i] = self.observation_px(quads, px, observed).map_or(1.0, |own| fit_of_own(own, gain));
+            center_fits[i] = self.observation_px(quads, px, observed).map_or(1.0, |own| fit_of_own(own, gain));
             disparities[i] = disparity_of(px);
         }
-        pack_quad_lit(QuadLit { gain, fit: fits, own_fits, is_own, disparities })
+        pack_rectification(QuadRectification { gain, fit: fits, center_fits, is_own, disparities })
     }
 
     /// Candidate of a pixel, and its gain and fit, from the shaded quads around it.
@@ -135,7 +135,7 @@ impl View<'_> {
         quads: &Quads,
         px: [u32; 2],
         disparity: f32,
-        lights: &QuadLights,
+        rectified: &RectifiedQuads,
         notes: &mut N,
     ) -> Candidate {
         let level = quads.level_at(px);
@@ -160,25 +160,25 @@ impl View<'_> {
             if !usable {
                 return;
             }
-            let words = lights[Quads::index(at.map(|v| v / 2), columns)];
+            let words = rectified[Quads::index(at.map(|v| v / 2), columns)];
             let place = at[0] & 1 | (at[1] & 1) << 1;
-            let lit = quad_lit(words, place);
+            let r = unpack_rectification(words, place);
             let alike = !self.inputs.tests_depth() || has_code(quad_code(words, place), codes);
             let px2 = offset_px2(at[0], px[0]) + offset_px2(at[1], px[1]);
             let weight = sample_weight(px2, alike);
             let alpha = self.alpha_at(at);
-            sums = add_sample(sums, color, alpha, lit, weight, px2, alike);
+            sums = add_sample(sums, color, alpha, r, weight, px2, alike);
             if self.albedo.is_some() {
                 albedos = add_albedo(albedos, own_albedo, self.albedo_at(at), color, weight);
             }
             if N::ON {
-                note_sample(notes, at, weight, color, lit, self.observe_px(at, level, color, usable));
+                note_sample(notes, at, weight, color, r, self.observe_px(at, level, color, usable));
             }
             if self.is_noisy {
                 noises = add_noise(noises, self.sample_noise(at), weight);
             }
             if at == px {
-                own = Some((color, alpha, lit.own_fit));
+                own = Some((color, alpha, r.center_fit));
             }
         };
         quads.samples_around(px).for_each(&mut add);
@@ -193,18 +193,18 @@ impl View<'_> {
             candidate.noise = if candidate.is_own { self.sample_noise(px) } else { mean_noise(noises) };
         }
         if self.is_noisy && candidate.is_own {
-            candidate.around = self.mean_around(quads, px, codes, lights);
+            candidate.around = self.mean_around(quads, px, codes, rectified);
         }
         candidate
     }
 
     /// Mean of the samples around a noisy pixel with a sample, its own included, and the mean variance of one.
     #[inline(always)]
-    fn mean_around(&self, quads: &Quads, px: [u32; 2], codes: [u32; 2], lights: &QuadLights) -> Vec4 {
+    fn mean_around(&self, quads: &Quads, px: [u32; 2], codes: [u32; 2], rectified: &RectifiedQuads) -> Vec4 {
         let mut sums = NoisySums::default();
         for at in quads.all_samples_around(px) {
             let (color, usable) = self.color_px(quads, at);
-            let words = lights[Quads::index(at.map(|v| v / 2), quads.size()[0])];
+            let words = rectified[Quads::index(at.map(|v| v / 2), quads.size()[0])];
             let place = at[0] & 1 | (at[1] & 1) << 1;
             let alike = !self.inputs.tests_depth() || has_code(quad_code(words, place), codes);
             if usable && (alike || at == px) {

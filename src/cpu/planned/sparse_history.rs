@@ -88,7 +88,7 @@ impl View<'_> {
     /// Whether a stored sample may show a surface whose history has one of `codes`, and which moved by `moved_px` in
     /// the world.
     #[inline(always)]
-    pub(super) fn may_show(&self, words: [u32; 2], codes: [u32; 2], moved_px: f32) -> bool {
+    pub(super) fn is_reusable(&self, words: [u32; 2], codes: [u32; 2], moved_px: f32) -> bool {
         !self.inputs.tests_depth() || (has_code(code_word(words), codes) && moved_alike(words, moved_px))
     }
 
@@ -156,7 +156,7 @@ impl View<'_> {
         for tap in 0..columns * columns {
             let (tx, ty) = (x + tap % columns, y + tap / columns);
             let words = self.stored_words(tx, ty);
-            let same = !is_empty(words) && self.may_show(words, *codes, *moved_px);
+            let same = !is_empty(words) && self.is_reusable(words, *codes, *moved_px);
             let texel_px = Vec2::new(tx as f32 - previous.at[0], ty as f32 - previous.at[1]);
             let cost = around.cost;
             let mut stored = unpack_full(words);

@@ -9,41 +9,41 @@ use crate::gpu::quads::{PIXEL_GROUPS, QUAD_GROUPS, size_quads};
 use crate::gpu::stage::{Job, Passes};
 use wgpu::{Device, TextureFormat};
 
-/// Passes over the samples, and the light at the quads. The comparisons lie in the texture of this frame's history
-/// until the method's pass writes that.
+/// Passes over the samples, and the rectification of history at the quads. The comparisons lie in the texture of this
+/// frame's history until the method's pass writes that.
 #[derive(Debug)]
 pub(crate) struct QuadSamplePasses {
     observe: ComputeShader,
-    light: ComputeShader,
-    lights: Plane,
+    rectify: ComputeShader,
+    rectified: Plane,
 }
 
 impl QuadSamplePasses {
     pub fn new(device: &Device, desc: &ContextDesc, sources: &Sources) -> Self {
         Self {
             observe: sources.shader(device, "quad_observe_pass"),
-            light: sources.shader(device, "quad_light_pass"),
-            lights: lights(desc).create(device),
+            rectify: sources.shader(device, "quad_rectify_pass"),
+            rectified: rectified(desc).create(device),
         }
     }
 }
 
 impl Passes for QuadSamplePasses {
     fn resize(&mut self, device: &Device, desc: &ContextDesc) {
-        self.lights = lights(desc).create(device);
+        self.rectified = rectified(desc).create(device);
     }
 
     fn shaders(&self) -> Vec<&ComputeShader> {
-        vec![&self.observe, &self.light]
+        vec![&self.observe, &self.rectify]
     }
 
     fn record<'a>(&'a self, job: &mut Job<'a>) {
         let Some(quads) = job.quads else { return };
         let next = &job.history.split().1.planes[0];
         let observed = [(Binding::Write, &next.levels[0])];
-        let light = [(Binding::Read, &next.whole), (Binding::Write, &self.lights.whole)];
+        let rectify = [(Binding::Read, &next.whole), (Binding::Write, &self.rectified.whole)];
         for (shader, views, arguments) in
-            [(&self.observe, &observed[..], PIXEL_GROUPS), (&self.light, &light[..], QUAD_GROUPS)]
+            [(&self.observe, &observed[..], PIXEL_GROUPS), (&self.rectify, &rectify[..], QUAD_GROUPS)]
         {
             for (i, view) in (0..).zip(&quads.views) {
                 let mut own = vec![(Binding::List, (&view.list).into())];
@@ -51,11 +51,11 @@ impl Passes for QuadSamplePasses {
                 job.dispatch_indirect(shader, &job.batch_of(i), &own, (&view.state, arguments));
             }
         }
-        job.lights = Some(&self.lights.whole);
+        job.rectified = Some(&self.rectified.whole);
     }
 }
 
-/// Light at the quads of all views.
-pub(crate) fn lights(desc: &ContextDesc) -> PlaneDesc {
+/// Rectification of history at the quads of all views.
+pub(crate) fn rectified(desc: &ContextDesc) -> PlaneDesc {
     PlaneDesc::new("afterimage quads", TextureFormat::Rgba32Uint, size_quads(desc), desc.view_count)
 }

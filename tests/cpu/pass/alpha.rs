@@ -1,4 +1,4 @@
-//! Alpha of planned frames of smr: it has the history that color has.
+//! Alpha of planned frames: it has the history that color has.
 
 use super::*;
 use crate::images::traced_alpha;

@@ -1,4 +1,4 @@
-//! Alpha of planned frames of smr: history of it on both executors, and what it costs.
+//! Alpha of planned frames: history of it on both executors, and what it costs.
 
 use super::quads::{settings, views};
 use super::sparse::{SIZE, desc};
@@ -64,11 +64,11 @@ fn alpha_follows_a_change_of_size() {
 #[test]
 fn wrong_alpha_is_caught() {
     let planted = [
-        ("if HAS_ALPHA == 0u {", "if true {"),
+        ("select(candidate.alpha, pixel.alpha.x, HAS_ALPHA != 0u)", "candidate.alpha"),
         ("bitcast<f32>(extra_word(texel, view))", "bitcast<f32>(extra_word(first, view))"),
         ("clamp(shown.color.x, shown.lowest.x, shown.highest.x)", "shown.color.x"),
-        ("vec4u(bitcast<u32>(alpha.y)", "vec4u(bitcast<u32>(alpha.x)"),
-        ("alpha = found.alpha;", ""),
+        ("bitcast<u32>(pixel.alpha.y)", "bitcast<u32>(pixel.alpha.x)"),
+        ("past.mean, noise, past.alpha, 1.0)", "past.mean, noise, vec2f(1.0), 1.0)"),
         ("let old = select(history, nearest, r.keeps_nearest);", "let old = history;"),
         ("history * r.share", "history * r.stored_share"),
         ("return select(1.0, given, is_finite(given));", "return select(0.0, given, is_finite(given));"),
@@ -82,7 +82,7 @@ fn wrong_alpha_is_caught() {
     of(settings(true), &[("select(history, nearest, r.keeps_nearest)", "history"), planted[1]]);
 }
 
-/// Two texels of four bytes a pixel, of smr on planned frames with alpha alone.
+/// Two texels of four bytes a pixel, of planned frames with alpha alone.
 #[test]
 fn alpha_that_is_not_kept_takes_no_memory() {
     let Some(device) = afterimage_testing::gpu::device() else { return };

@@ -3,7 +3,7 @@
 use super::sparse::{SIZE, arrange, desc, gliding_view, settings};
 use super::*;
 
-const PASSES: [&str; 4] = ["quad_key_pass", "quad_observe_pass", "quad_light_pass", "quad_pass"];
+const PASSES: [&str; 4] = ["quad_key_pass", "quad_observe_pass", "quad_rectify_pass", "quad_pass"];
 
 fn antialiased() -> Settings {
     let method = Method::Smr(Smr { antialias: true, ..Smr::default() });
@@ -52,7 +52,7 @@ fn a_wrong_mean_is_caught() {
         ),
         ("let regular = with_regular_run(past, level);", "let regular = past;"),
         ("kept, difference, change, is_centred);", "kept, difference, change, false);"),
-        ("shown = candidate.color + centred_change(near);", ""),
+        ("next.color = candidate.color + centred_change(near);", ""),
         ("(vec2f(offset) - 1.0) + place_px", "(vec2f(offset) - 1.0) - place_px"),
         ("level == 0u && surrounds_centre(frame.views[view].jitter_px)", "level == 0u"),
         ("inputs.candidate = candidate.beside;", ""),

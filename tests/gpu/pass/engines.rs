@@ -99,7 +99,7 @@ fn a_view_beside_the_frame_needs_a_limit() {
     let Some(bare) = Bare::new(ContextDesc::new(SIZE)) else { return };
     let mut post = bare.context(TextureFormat::Rgba16Float);
     let (color, output) = (bare.input(TextureFormat::Rgba16Float), bare.output(TextureFormat::Rgba16Float));
-    let debug = DebugTarget { view: DebugView::Gate, output: (&output).into() };
+    let debug = DebugTarget { view: DebugView::Agreement, output: (&output).into() };
     let target = Target { debug: Some(debug), ..Target::new(&output) };
     let error = bare.refusal(&mut post, &Frame::new(&color, &bare.views, 0), target);
     assert!(error.ends_with("expected a limit of 5; or Afterimage::record_view"), "{error}");
@@ -164,7 +164,7 @@ fn record_compiles_nothing_after_prewarm() {
                 reset: if index.is_multiple_of(5) { Reset::All } else { Reset::None },
                 ..Frame::new(color, &bare.views, index as u64)
             };
-            let debug = has.debug.then_some(DebugTarget { view: DebugView::Gate, output: (&output).into() });
+            let debug = has.debug.then_some(DebugTarget { view: DebugView::Agreement, output: (&output).into() });
             // The debug view and the frame are never the same texture.
             let shown = bare.output(TextureFormat::Rgba16Float);
             let counters = has.counters.then_some(&counters);

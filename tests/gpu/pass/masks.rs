@@ -213,13 +213,13 @@ fn a_quarter_after_a_cut_may_be_given_at_half_the_size() {
     }
 }
 
-const PASSES: [&str; 5] = ["quad_key_pass", "quad_given_pass", "quad_observe_pass", "quad_light_pass", "quad_pass"];
+const PASSES: [&str; 5] = ["quad_key_pass", "quad_given_pass", "quad_observe_pass", "quad_rectify_pass", "quad_pass"];
 
 #[test]
 fn wrong_single_pixels_are_caught() {
     let settings = single(true, [4, 8], 0.1);
     let planted = [
-        ("select(asked, even_place(region_now), even)", "even_place(region_now)"),
+        ("select(probed, even_place(region_now), even)", "even_place(region_now)"),
         ("pixels = 1u <<", "pixels = WHOLE; // "),
         ("select(frame.pattern_px.zw, frame.pattern_px.xy,", "select(frame.pattern_px.xy, frame.pattern_px.zw,"),
         ("let quadrant = quadrant_of(offset.x, offset.y);", "let quadrant = 0u;"),
@@ -254,8 +254,8 @@ fn wrong_noise_of_pixels_is_caught() {
         ("candidate.noise = noise_at(px, view);", ""),
         ("candidate.noise = mean_noise(noises);", ""),
         ("candidate.around = mean_around(around, px, view, codes);", ""),
-        ("candidate.color = with_borrowed.color;", ""),
-        ("past = stored_noise(found.texel, view).samples;", ""),
+        ("candidate.color = borrowed.color;", ""),
+        ("candidate.around, past_noise.samples)", "candidate.around, 0.0)"),
         ("noisy_share(n.samples, px2)", "noisy_share(1.0, px2)"),
         ("(around.w - n.variance) * share", "0.0"),
         ("code_of(around.quads, tap - 4u)", "code_of(around.quads, (tap - 4u) & 3u)"),
@@ -292,7 +292,7 @@ fn a_wrong_size_of_colors_is_caught() {
         ("(mask_at(px, view) & 15u) != WHOLE", "(mask_at(px, view) & 15u) == WHOLE"),
     ];
     for settings in [settings(true), of_method(MethodKind::Taau, settings(false))] {
-        let passes = ["quad_observe_pass", "quad_light_pass", "quad_pass", "quad_fill_pass"];
+        let passes = ["quad_observe_pass", "quad_rectify_pass", "quad_pass", "quad_fill_pass"];
         rig::all_caught_in(passes, desc(), settings, FRAMES, &planted, |index, rig| {
             (reset_of(index, rig), own(index, &settings).to_vec())
         });

@@ -162,7 +162,7 @@ fn a_wrong_pass_is_caught() {
         "quad_around_pass",
         "quad_octants_pass",
         "quad_observe_pass",
-        "quad_light_pass",
+        "quad_rectify_pass",
         "quad_pass",
     ];
     let planted = [
@@ -173,7 +173,7 @@ fn a_wrong_pass_is_caught() {
         ("source.previous.at -= frame.views[view].jitter_px;", ""),
         (".usable && !surface.is_silhouette;", ".usable;"),
         ("select(own, farthest_disparity, thin)", "own"),
-        ("candidate.fit = min(mean.fit, own_fits);", "candidate.fit = mean.fit;"),
+        ("candidate.fit = min(mean.fit, own_fit);", "candidate.fit = mean.fit;"),
         ("sampled.usable && is_shaded(mask_at(at, view), at)", "sampled.usable"),
     ];
     rig::all_caught_in(passes, desc(), settings, FRAMES, &planted, |index, rig| {

@@ -34,7 +34,7 @@ pub struct Rig {
     pub drops: bool,
     /// Debug view to draw beside the next frames, and what it showed.
     pub beside: Option<DebugView>,
-    /// Alpha of the colors of planned frames of smr to come, one image a view; 1, and not read back, without.
+    /// Alpha of the colors of planned frames to come, one image a view; 1, and not read back, without.
     pub alpha: Option<Vec<Image<f32>>>,
     textures: [Texture; 12],
     counters: Buffer,

@@ -160,7 +160,7 @@ fn prewarmed_pipelines_suffice_for_planned_frames() {
     assert_eq!(afterimage::FrameStats::from_counters(&counted).unwrap().pixels, 70 * 41);
 }
 
-const PASSES: [&str; 3] = ["quad_observe_pass", "quad_light_pass", "quad_pass"];
+const PASSES: [&str; 3] = ["quad_observe_pass", "quad_rectify_pass", "quad_pass"];
 
 #[test]
 fn a_wrong_reconstruction_is_caught() {
@@ -168,7 +168,7 @@ fn a_wrong_reconstruction_is_caught() {
         ("vec2i(frame.size) - 1), view, 0)", "vec2i(frame.size) - 1), 1u - view, 0)"),
         ("found.highest = expose(found.highest, frame.exposure);", ""),
         ("without += errors * near.weight;", ""),
-        ("next.disparity = surface.stored_disparity;", ""),
+        ("pixel.result.stored.disparity = surface.stored_disparity;", ""),
     ];
     let settings = super::quads::settings(false);
     rig::all_caught_in(PASSES, desc(), settings, 8, &planted, |index, rig| {
@@ -178,7 +178,7 @@ fn a_wrong_reconstruction_is_caught() {
     let noisy = Settings { foveation: settings.foveation, ..Settings::traced() };
     let planted = [
         ("textureLoad(past_noise, at, view, 0)", "textureLoad(past_noise, at, 1u - view, 0)"),
-        ("noise = accumulated.noise;", ""),
+        ("blended.noise = accumulated.noise;", ""),
     ];
     rig::all_caught_in(PASSES, desc(), noisy, 8, &planted, |index, rig| {
         arrange(index, rig);

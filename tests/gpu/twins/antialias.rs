@@ -2,8 +2,8 @@
 
 use super::sparse::{color, push_light, push_reconstruction};
 use super::*;
-use afterimage::kernel::sparse_smr::{Reconstructed, Reconstruction};
-use afterimage::kernel::{antialias, sparse_smr};
+use afterimage::kernel::reconstruction::{Reconstructed, Reconstruction};
+use afterimage::kernel::{antialias, reconstruction};
 
 shape!(antialias::Mean { lod: f32, samples: f32, deviation: f32, run: f32 });
 shape!(antialias::Near { sum: Vec3, squares: Vec3, count: f32, change: Vec3, weight: f32 });
@@ -49,7 +49,7 @@ pub const PROBES: &[Probe] = &[
     })),
     probe!(antialias::relit_samples, |rows| rows.each(&[F(1.0, 29.0), F(0.2, 5.0), F(0.9, 1.1), F(0.9, 1.1)])),
     probe!(antialias::kept_samples, |rows| rows.each(&[F(0.6, 40.0), F(0.0, 200.0)])),
-    probe!(antialias::stands_before, |rows| rows.each(&[&[F(-1.0, 2.0); 2][..], &[F(-1.0, 1.0); 4], &[N(2)]].concat())),
+    probe!(antialias::is_in_front, |rows| rows.each(&[&[F(-1.0, 2.0); 2][..], &[F(-1.0, 1.0); 4], &[N(2)]].concat())),
     probe!(antialias::move_together, |rows| rows.each(&[F(-0.2, 0.2); 6])),
     probe!(antialias::is_thin, |rows| {
         let disparities = floats(&DISPARITIES);
@@ -146,7 +146,7 @@ pub const PROBES: &[Probe] = &[
     probe!(
         antialias::stored_mean,
         |given: Reconstruction, past: antialias::Mean| {
-            antialias::stored_mean(&given, sparse_smr::reconstruct(&given), past)
+            antialias::stored_mean(&given, reconstruction::reconstruct(&given), past)
         },
         "let given = $0; stored_mean(given, reconstruct(given), $1)",
         |rows| {

@@ -36,7 +36,7 @@ bit_equal! {
     quads_is_bit_equal: "quads";
     stored_reservoir_is_bit_equal: "stored_reservoir";
     stored_sample_is_bit_equal: "stored_sample";
-    sparse_smr_is_bit_equal: "sparse_smr";
+    reconstruction_is_bit_equal: "reconstruction";
     lattice_is_bit_equal: "lattice";
     noise_is_bit_equal: "noise";
     pack_is_bit_equal_h05_h15_h19: "pack";

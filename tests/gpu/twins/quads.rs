@@ -21,7 +21,7 @@ pub const PROBES: &[Probe] = &[
         rows.cross(&[&floats(&[0.0, 2.5, 7.0, 90.0]), &floats(&[0.0, 2.5]), &floats(&[0.0, 2.5, 7.5])])
     }),
     probe!(quads::in_turn, |rows| { rows.each(&[N(64), N(64), Of(|d, row| row.push(1 << (d.bits() % 3))), N(2)]) }),
-    probe!(quads::asked_px, |rows| rows.each(&[N(4096), N(4096), Bits])),
+    probe!(quads::probed_px, |rows| rows.each(&[N(4096), N(4096), Bits])),
     probe!(quads::no_history_need, |rows| rows.each(&[N(16), N(16), N(4), N(4)])),
     probe!(quads::need, |rows| {
         let lods = floats(&[0.0, 0.2, 2.0, 8.0]);

@@ -1,10 +1,10 @@
-//! Reconstruction of planned frames: stored_sample, sparse_smr, candidate.
+//! Reconstruction of planned frames: stored_sample, reconstruction, candidate.
 
 use super::*;
 use afterimage::kernel::noise::Noise;
-use afterimage::kernel::sparse_smr::Reconstruction;
+use afterimage::kernel::reconstruction::Reconstruction;
 use afterimage::kernel::stored_sample::Around;
-use afterimage::kernel::{antialias, candidate, sparse_smr, stored_sample};
+use afterimage::kernel::{antialias, candidate, reconstruction, stored_sample};
 
 shape!(stored_sample::StoredSample { color: Vec3, lod: f32, disparity: f32, place_px: Vec2 });
 shape!(Around {
@@ -20,8 +20,8 @@ shape!(Around {
     cost: f32
 });
 shape!(stored_sample::Interpolated { color: Vec3, lod: f32, range: [Vec3; 2], nearest: stored_sample::StoredSample });
-shape!(sparse_smr::Observation { sampled: Vec3, history: Vec3, error: f32, confidence: f32, deviation: f32 });
-shape!(sparse_smr::ObservedAround {
+shape!(reconstruction::Observation { sampled: Vec3, history: Vec3, error: f32, confidence: f32, deviation: f32 });
+shape!(reconstruction::ObservedAround {
     sampled: Vec3,
     history: Vec3,
     error: f32,
@@ -31,11 +31,11 @@ shape!(sparse_smr::ObservedAround {
     spatial: f32,
     known: f32
 });
-shape!(sparse_smr::Lit { gain as "gains": Vec3, fit: f32, own_fit: f32, is_own: bool });
-shape!(sparse_smr::QuadLit {
+shape!(reconstruction::Rectification { gain as "gains": Vec3, fit: f32, center_fit: f32, is_own: bool });
+shape!(reconstruction::QuadRectification {
     gain as "gains": Vec3,
     fit: f32,
-    own_fits: [f32; 4],
+    center_fits: [f32; 4],
     is_own: bool,
     disparities: [f32; 4]
 });
@@ -46,13 +46,13 @@ shape!(Reconstruction {
     history: Vec3,
     history_lod: f32,
     nearest: stored_sample::StoredSample,
-    worn: f32,
+    lod_loss_per_stop: f32,
     gain: Vec3,
     fit: f32,
     trust: f32,
     accumulate: f32
 });
-shape!(sparse_smr::Reconstructed {
+shape!(reconstruction::Reconstructed {
     color: Vec3,
     stored: stored_sample::StoredSample,
     share: f32,
@@ -74,7 +74,7 @@ shape!(candidate::SampleSums {
 shape!(candidate::SampleMean { color: Vec3, alpha: f32, lod: f32, gain as "gains": Vec3, fit: f32 });
 shape!(candidate::NoisySums { sum: Vec4, weight: f32 });
 shape!(candidate::Borrowed { color: Vec3, noise: Noise });
-shape!(sparse_smr::Accumulated { result: sparse_smr::Reconstructed, noise: Noise });
+shape!(reconstruction::Accumulated { result: reconstruction::Reconstructed, noise: Noise });
 
 pub(super) fn color(d: &mut Draws) -> [u32; 3] {
     [0; 3].map(|_| scaled(d, -14, 6))
@@ -237,13 +237,14 @@ pub const PROBES: &[Probe] = &[
         rows.each(&[COLOR, F(1.0, 64.0), F(0.0, 2.0), COLOR, F(0.0, 2.0), F(0.0, 4096.0)])
     }),
     probe!(candidate::candidate_level, |rows| rows.each(&[F(0.0, 200.0), F(0.0, 8.0)])),
-    probe!(sparse_smr::no_observation, |_: u32| sparse_smr::no_observation(), "no_observation()", |rows| rows
+    probe!(reconstruction::no_observation, |_: u32| reconstruction::no_observation(), "no_observation()", |rows| rows
         .each(&[N(2)])),
-    probe!(sparse_smr::none_around, |_: u32| sparse_smr::none_around(), "none_around()", |rows| rows.each(&[N(2)])),
-    probe!(sparse_smr::pack_observation, |rows| rows.random(push_observation)),
-    probe!(sparse_smr::unpack_observation, |rows| rows.each(&[Bits, Bits, COLOR])),
-    probe!(sparse_smr::is_observed, |rows| rows.each(&[Bits, Bits])),
-    probe!(sparse_smr::mean_observation, |rows| {
+    probe!(reconstruction::none_around, |_: u32| reconstruction::none_around(), "none_around()", |rows| rows
+        .each(&[N(2)])),
+    probe!(reconstruction::pack_observation, |rows| rows.random(push_observation)),
+    probe!(reconstruction::unpack_observation, |rows| rows.each(&[Bits, Bits, COLOR])),
+    probe!(reconstruction::is_observed, |rows| rows.each(&[Bits, Bits])),
+    probe!(reconstruction::mean_observation, |rows| {
         rows.random(|d, row| {
             push_light(d, row);
             // Without any, and of a few.
@@ -251,8 +252,8 @@ pub const PROBES: &[Probe] = &[
             row.push(range(d, 0.0, 4.0));
         })
     }),
-    probe!(sparse_smr::spatial_weight, |rows| rows.each(&[F(0.0, 128.0), F(1.0, 128.0)])),
-    probe!(sparse_smr::neighbour_weight, |rows| rows.random(|d, row| {
+    probe!(reconstruction::spatial_weight, |rows| rows.each(&[F(0.0, 128.0), F(1.0, 128.0)])),
+    probe!(reconstruction::neighbour_weight, |rows| rows.random(|d, row| {
         push_observation(d, row);
         if d.bits().is_multiple_of(2) {
             row[6] = (-1.0_f32).to_bits();
@@ -260,40 +261,50 @@ pub const PROBES: &[Probe] = &[
         push_observation(d, row);
         row.push(range(d, 0.0, 1.0));
     })),
-    probe!(sparse_smr::gain_helps, |rows| rows.each(&[F(0.0, 60.0), F(0.0, 60.0)])),
-    probe!(sparse_smr::noisy_fit_around, |rows| rows.each(&[Of(push_light), F(0.0, 60.0)])),
+    probe!(reconstruction::gain_helps, |rows| rows.each(&[F(0.0, 60.0), F(0.0, 60.0)])),
+    probe!(reconstruction::noisy_fit_around, |rows| rows.each(&[Of(push_light), F(0.0, 60.0)])),
     probe!(antialias::add_scatter, |rows| rows.each(&[F(0.0, 1000.0), Of(push_observation), F(0.0, 4.0)])),
     probe!(stored_sample::has_moved, |rows| rows.each(&[F(-0.1, 0.1), F(-0.1, 0.1), F(-0.1, 0.1), F(-0.1, 0.1)])),
-    probe!(sparse_smr::expected_error, |rows| rows.each(&[F(0.0, 3.0), F(0.0, 100.0), N(2)])),
-    probe!(sparse_smr::worn, |rows| rows.cross(&[&[0, 1], &[0, 1]])),
-    probe!(sparse_smr::pack_known, |rows| rows.each(&[F(0.0, 1.0), F(0.0, 80.0)])),
-    probe!(sparse_smr::known_confidence, |rows| rows.each(&[Bits])),
-    probe!(sparse_smr::known_deviation, |rows| rows.each(&[Bits])),
-    probe!(sparse_smr::noisy_lod_confidence, |rows| rows.each(&[F(0.0, 3.0), F(1.0, 80.0), F(0.0, 0.01), F(0.0, 2.0)])),
-    probe!(sparse_smr::agreement, |rows| rows.each(&[Of(push_observation), Of(push_observation), F(0.0, 4.0)])),
-    probe!(sparse_smr::add_observation, |rows| {
+    probe!(reconstruction::expected_error, |rows| rows.each(&[F(0.0, 3.0), F(0.0, 100.0), N(2)])),
+    probe!(reconstruction::lod_loss_per_stop, |rows| rows.cross(&[&[0, 1], &[0, 1]])),
+    probe!(reconstruction::pack_known, |rows| rows.each(&[F(0.0, 1.0), F(0.0, 80.0)])),
+    probe!(reconstruction::known_confidence, |rows| rows.each(&[Bits])),
+    probe!(reconstruction::known_deviation, |rows| rows.each(&[Bits])),
+    probe!(reconstruction::noisy_lod_confidence, |rows| rows.each(&[
+        F(0.0, 3.0),
+        F(1.0, 80.0),
+        F(0.0, 0.01),
+        F(0.0, 2.0)
+    ])),
+    probe!(reconstruction::agreement, |rows| rows.each(&[Of(push_observation), Of(push_observation), F(0.0, 4.0)])),
+    probe!(reconstruction::add_observation, |rows| {
         rows.each(&[Of(push_light), Of(push_observation), F(0.0, 4.0), F(0.0, 4.0)])
     }),
     probe!(
-        sparse_smr::relight,
-        |l: sparse_smr::ObservedAround| sparse_smr::relight(l, sparse_smr::mean_error(l)),
+        reconstruction::relight,
+        |l: reconstruction::ObservedAround| reconstruction::relight(l, reconstruction::mean_error(l)),
         "let l = $0; relight(l, mean_error(l))",
         |rows| rows.random(push_light)
     ),
-    probe!(sparse_smr::not_jitter, |rows| rows.each(&[Of(push_light), F(0.0, 100.0)])),
-    probe!(sparse_smr::mean_error, |rows| rows.random(push_light)),
-    probe!(sparse_smr::own_fit, |rows| rows.each(&[Of(push_observation), F(0.2, 5.0), F(0.2, 5.0), F(0.2, 5.0)])),
-    probe!(sparse_smr::vote, |rows| rows.each(&[Of(push_observation), F(0.0, 12.0), F(0.0, 4.0)])),
-    probe!(sparse_smr::fit_by_votes, |rows| rows.each(&[Of(push_light), F(0.0, 12.0), F(0.0, 16.0), F(0.0, 1.0)])),
-    probe!(sparse_smr::fit_around, |rows| rows.each(&[Of(push_light), F(0.0, 60.0), F(0.0, 1.0)])),
-    probe!(sparse_smr::mean_fit, |rows| rows.each(&[Of(push_light), F(0.0, 1.0)])),
-    probe!(sparse_smr::pack_quad_lit, |rows| rows
+    probe!(reconstruction::not_jitter, |rows| rows.each(&[Of(push_light), F(0.0, 100.0)])),
+    probe!(reconstruction::mean_error, |rows| rows.random(push_light)),
+    probe!(reconstruction::center_fit, |rows| rows.each(&[
+        Of(push_observation),
+        F(0.2, 5.0),
+        F(0.2, 5.0),
+        F(0.2, 5.0)
+    ])),
+    probe!(reconstruction::vote, |rows| rows.each(&[Of(push_observation), F(0.0, 12.0), F(0.0, 4.0)])),
+    probe!(reconstruction::fit_by_votes, |rows| rows.each(&[Of(push_light), F(0.0, 12.0), F(0.0, 16.0), F(0.0, 1.0)])),
+    probe!(reconstruction::fit_around, |rows| rows.each(&[Of(push_light), F(0.0, 60.0), F(0.0, 1.0)])),
+    probe!(reconstruction::mean_fit, |rows| rows.each(&[Of(push_light), F(0.0, 1.0)])),
+    probe!(reconstruction::pack_rectification, |rows| rows
         .each(&[&[F(0.2, 5.0); 3][..], &[F(0.0, 1.0); 5], &[N(2)], &[Scaled(-20, 20); 4]].concat())),
-    probe!(sparse_smr::quad_lit, |rows| rows.each(&[Bits, Bits, Bits, Bits, N(4)])),
-    probe!(sparse_smr::quad_code, |rows| rows.each(&[Bits, Bits, Bits, Bits, N(4)])),
-    probe!(sparse_smr::reconstruct, |r: Reconstruction| sparse_smr::reconstruct(&r), |rows| rows
+    probe!(reconstruction::unpack_rectification, |rows| rows.each(&[Bits, Bits, Bits, Bits, N(4)])),
+    probe!(reconstruction::quad_code, |rows| rows.each(&[Bits, Bits, Bits, Bits, N(4)])),
+    probe!(reconstruction::reconstruct, |r: Reconstruction| reconstruction::reconstruct(&r), |rows| rows
         .random(push_reconstruction)),
-    probe!(sparse_smr::result_alpha, |rows| rows.random(|d, row| {
+    probe!(reconstruction::result_alpha, |rows| rows.random(|d, row| {
         row.extend(color(d));
         push_stored(d, row);
         let share = |d: &mut Draws| if d.bits().is_multiple_of(4) { 1.0_f32.to_bits() } else { range(d, 0.0, 1.0) };
@@ -301,8 +312,8 @@ pub const PROBES: &[Probe] = &[
         row.extend([range(d, 0.0, 1.0), range(d, 0.0, 1.0), range(d, -0.5, 3.0)]);
     })),
     probe!(
-        sparse_smr::accumulate,
-        |r: Reconstruction, past: Noise, now: Noise| sparse_smr::accumulate(&r, past, now),
+        reconstruction::accumulate,
+        |r: Reconstruction, past: Noise, now: Noise| reconstruction::accumulate(&r, past, now),
         |rows| rows.random(|d, row| {
             push_reconstruction(d, row);
             for _ in 0..2 {

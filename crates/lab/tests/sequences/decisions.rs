@@ -96,7 +96,7 @@ fn h63_what_is_odd_about_the_gaze_is_said_at_once() {
         let mut encoder = rig.device.create_command_encoder(&Default::default());
         index += 1;
         let frame = Frame::new(&color, &views, index);
-        let seen = rig.gpu.record_view(&rig.device, &mut encoder, &frame, &output, DebugView::Gate).unwrap();
+        let seen = rig.gpu.record_view(&rig.device, &mut encoder, &frame, &output, DebugView::Agreement).unwrap();
         let recorded = rig.gpu.record(&rig.device, &mut encoder, &frame, &output).unwrap();
         assert_eq!(seen, recorded, "a view moves no state");
         rig.queue.submit([encoder.finish()]);

@@ -142,7 +142,7 @@ fn texture([width, height]: [u32; 2], format: TextureFormat) -> TextureDescripto
 /// Pixels, texels or samples that an invocation takes.
 fn pixels(module: &str) -> f64 {
     match module {
-        "smr_pass" | "quad_around_pass" | "quad_octants_pass" | "quad_light_pass" => 4.0,
+        "smr_pass" | "quad_around_pass" | "quad_octants_pass" | "quad_rectify_pass" => 4.0,
         // A block of 2x2 quads.
         "quad_key_pass" => 16.0,
         // A run of quads.
@@ -159,7 +159,7 @@ fn share(module: &str, settings: &Settings) -> Result<f64> {
         "mip_chain_pass" => 1.0 / 12.0,
         "quad_octants_pass" => shaded_shares(&settings.foveation).iter().sum(),
         // Quads of the fovea are not compared with history.
-        "quad_observe_pass" | "quad_light_pass" => shaded_shares(&settings.foveation)[1],
+        "quad_observe_pass" | "quad_rectify_pass" => shaded_shares(&settings.foveation)[1],
         // One workgroup.
         "quad_threshold_pass" => 64.0 / SIZE_PX.map(f64::from).iter().product::<f64>(),
         _ => 1.0,
@@ -201,8 +201,8 @@ fn loops(module: &str, settings: &Settings) -> &'static [&'static str] {
         "quad_around_pass" | "quad_octants_pass" => &["rows"],
         "quad_observe_pass" if is_antialiased(settings) => &["slope", "around"],
         "quad_observe_pass" => &["slope", "four"],
-        "quad_light_pass" if settings.noisy => &["four", "four", "quads"],
-        "quad_light_pass" => &["four", "four", "quads", "quads relit"],
+        "quad_rectify_pass" if settings.noisy => &["four", "four", "quads"],
+        "quad_rectify_pass" => &["four", "four", "quads", "quads relit"],
         "quad_pass" if is_antialiased(settings) => &["four", "near", "slope", "around"],
         // The loop over the albedos beside a pixel is unrolled.
         "quad_albedo_pass" => &["four", "near", "slope", "around"],

@@ -52,7 +52,7 @@ const DEVIATION_STEPS: f32 = 4.0;
 const SAMPLE_GAIN: [f32; 2] = [0.2, 5.0];
 /// Levels of detail that history loses when light doubles: history that has moved, and single samples that have not.
 /// Means that have not moved lose samples instead.
-const WORN: [f32; 2] = [4.0, 1.0];
+const LOD_LOSS_PER_STOP: [f32; 2] = [4.0, 1.0];
 /// Levels of detail by which history must be finer than the candidate to replace it fully.
 const FINER_WIDTH: f32 = 0.25;
 /// Share of the samples' range by which a gain may exceed their largest value.
@@ -300,7 +300,7 @@ pub fn gain_helps(left: f32, without: f32) -> bool {
 /// Degree to which history after a gain fits at a sample's own pixel, in \[0, 1\]. It limits the fit of the
 /// neighbourhood: a sample that hit a sparkle, for example, contradicts history even where its neighbours agree.
 #[inline]
-pub fn own_fit(own: Observation, gain: Vec3) -> f32 {
+pub fn center_fit(own: Observation, gain: Vec3) -> f32 {
     fit(errors_left(own, gain), own.confidence)
 }
 
@@ -330,7 +330,7 @@ pub fn fit_by_votes(a: ObservedAround, votes: Vec2, own: f32) -> f32 {
 
 /// Degree to which history fits around a sample, in \[0, 1\]. `left`: [`errors_left`] with the gain, times weights.
 /// Where the samples around contradict the sample ([`agreed`]), the fit is `by_others`: a pixel that was a sparkle's is
-/// replaced alone ([`own_fit`]), and the history around it stays.
+/// replaced alone ([`center_fit`]), and the history around it stays.
 #[inline]
 pub fn fit_around(a: ObservedAround, left: f32, by_others: f32) -> f32 {
     let by_own = fit(left / a.weight, (a.weight / a.spatial).min(1.0));
@@ -354,28 +354,28 @@ pub fn noisy_fit_around(a: ObservedAround, left: f32) -> f32 {
     fit(left / a.weight, confidence).min(mean_fit(a, confidence))
 }
 
-/// Estimate of light at a sample: gain and fit.
+/// Rectification of history at a sample: gain of the light, and fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lit {
+pub struct Rectification {
     /// Factor on history's color.
     pub gain: Vec3,
     /// Fit of history after the gain: 0 to 1.
     pub fit: f32,
     /// Fit at the sample's own pixel: 0 to 1.
-    pub own_fit: f32,
+    pub center_fit: f32,
     /// Whether the sample itself was compared with history; otherwise only its neighbours were.
     pub is_own: bool,
 }
 
-/// Estimate of light at a shaded quad of 2x2 pixels.
+/// Rectification of history at a shaded quad of 2x2 pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct QuadLit {
+pub struct QuadRectification {
     /// Factor on history's color.
     pub gain: Vec3,
     /// Fit of history after the gain: 0 to 1.
     pub fit: f32,
     /// Fit at each pixel: 0 to 1.
-    pub own_fits: [f32; 4],
+    pub center_fits: [f32; 4],
     /// Whether a pixel of the quad was compared with history; otherwise only its neighbours were.
     pub is_own: bool,
     /// Disparity of each pixel.
@@ -384,19 +384,19 @@ pub struct QuadLit {
 
 /// Four words: gain ([`pack_color`]); fit in 256ths in bits 0 to 8, `is_own` in bit 9, own fits in 16ths from bit 10
 /// on; disparities ([`disparity_code`]). Fits of 0 and 1 are exact.
-pub fn pack_quad_lit(l: QuadLit) -> [u32; 4] {
-    let own = |i: usize| ((l.own_fits[i] * 16.0 + 0.5) as u32) << (10 + 5 * i);
-    let codes = |i: usize| disparity_code(l.disparities[i]) | disparity_code(l.disparities[i + 1]) << 16;
-    let fits = (l.fit * 256.0 + 0.5) as u32 | u32::from(l.is_own) << 9 | own(0) | own(1) | own(2) | own(3);
-    [pack_color(l.gain), fits, codes(0), codes(2)]
+pub fn pack_rectification(r: QuadRectification) -> [u32; 4] {
+    let own = |i: usize| ((r.center_fits[i] * 16.0 + 0.5) as u32) << (10 + 5 * i);
+    let codes = |i: usize| disparity_code(r.disparities[i]) | disparity_code(r.disparities[i + 1]) << 16;
+    let fits = (r.fit * 256.0 + 0.5) as u32 | u32::from(r.is_own) << 9 | own(0) | own(1) | own(2) | own(3);
+    [pack_color(r.gain), fits, codes(0), codes(2)]
 }
 
 /// Estimate at pixel `i` of a quad.
-pub fn quad_lit(words: [u32; 4], i: u32) -> Lit {
-    Lit {
+pub fn unpack_rectification(words: [u32; 4], i: u32) -> Rectification {
+    Rectification {
         gain: unpack_color(words[0]),
         fit: (words[1] & 511) as f32 * (1.0 / 256.0),
-        own_fit: (words[1] >> (10 + 5 * i) & 31) as f32 * (1.0 / 16.0),
+        center_fit: (words[1] >> (10 + 5 * i) & 31) as f32 * (1.0 / 16.0),
         is_own: words[1] >> 9 & 1 != 0,
     }
 }
@@ -423,8 +423,8 @@ pub struct Reconstruction {
     pub history_lod: f32,
     /// Stored sample to keep. Its place is relative to the pixel.
     pub nearest: StoredSample,
-    /// Levels of detail that history loses when light doubles ([`worn`]).
-    pub worn: f32,
+    /// Levels of detail that history loses when light doubles ([`lod_loss_per_stop`]).
+    pub lod_loss_per_stop: f32,
     /// Gain of relighting.
     pub gain: Vec3,
     /// Degree to which history fits the samples around the pixel, in \[0, 1\].
@@ -451,8 +451,8 @@ pub struct Reconstructed {
     pub stored_share: f32,
 }
 
-/// Alpha to show and alpha to store beside a result: those of its color, without light. `history`: at the position;
-/// `nearest`: of its nearest sample.
+/// Alpha to show and alpha to store beside a result: blended as its color is, without the gain. `history`: at the
+/// position; `nearest`: of its nearest sample.
 #[inline]
 pub fn result_alpha(r: Reconstructed, candidate: f32, history: f32, nearest: f32) -> Vec2 {
     let old = if r.keeps_nearest { nearest } else { history };
@@ -465,13 +465,13 @@ pub fn result_alpha(r: Reconstructed, candidate: f32, history: f32, nearest: f32
 /// Levels of detail that history loses when light doubles. `moved`: whether it was read between samples; `means`:
 /// whether it stores means of samples.
 #[inline]
-pub fn worn(moved: bool, means: bool) -> f32 {
+pub fn lod_loss_per_stop(moved: bool, means: bool) -> f32 {
     if moved {
-        WORN[0]
+        LOD_LOSS_PER_STOP[0]
     } else if means {
         0.0
     } else {
-        WORN[1]
+        LOD_LOSS_PER_STOP[1]
     }
 }
 
@@ -493,7 +493,7 @@ pub fn reconstruct(r: &Reconstruction) -> Reconstructed {
         0.0
     } else {
         let mean = (gain.x + gain.y + gain.z) * (1.0 / 3.0);
-        (approx::ln_approx(mean) * LOG2_E).abs() * r.worn
+        (approx::ln_approx(mean) * LOG2_E).abs() * r.lod_loss_per_stop
     };
     let history_lod = r.history_lod + lost_lod;
     let finer = ((r.lod - history_lod) / FINER_WIDTH).clamp(0.0, 1.0);

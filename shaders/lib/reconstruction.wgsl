@@ -4,7 +4,7 @@
 //#use stored_sample
 //#use noise
 //#use approx
-// Twin of src/kernel/sparse_smr.rs, which documents the functions.
+// Twin of src/kernel/reconstruction.rs, which documents the functions.
 
 const LIGHT_RELATIVE: f32 = 0.1;
 const STILL_ERROR: f32 = 0.3;
@@ -17,7 +17,7 @@ const AGREE_ERRORS: f32 = 4.0;
 const AGREE_ERROR: f32 = 0.8;
 const FIT_ERRORS: vec2f = vec2f(2.0, 4.0);
 const SAMPLE_GAIN: vec2f = vec2f(0.2, 5.0);
-const WORN: vec2f = vec2f(4.0, 1.0);
+const LOD_LOSS_PER_STOP: vec2f = vec2f(4.0, 1.0);
 const MOST_DEVIATION: f32 = 63.75;
 const DEVIATION_STEPS: f32 = 4.0;
 const FINER_WIDTH: f32 = 0.25;
@@ -214,7 +214,7 @@ fn gain_helps(left: f32, without: f32) -> bool {
 }
 
 // Degree to which history after a gain fits at a sample's own pixel, in [0, 1].
-fn own_fit(own: Observation, gains: vec3f) -> f32 {
+fn center_fit(own: Observation, gains: vec3f) -> f32 {
     return fit(errors_left(own, gains), own.confidence);
 }
 
@@ -251,34 +251,34 @@ fn noisy_fit_around(a: ObservedAround, left: f32) -> f32 {
     return min(fit(left / a.weight, confidence), mean_fit(a, confidence));
 }
 
-struct Lit {
+struct Rectification {
     gains: vec3f,
     fit: f32,
-    own_fit: f32,
+    center_fit: f32,
     is_own: bool,
 }
 
-struct QuadLit {
+struct QuadRectification {
     gains: vec3f,
     fit: f32,
-    own_fits: vec4f,
+    center_fits: vec4f,
     is_own: bool,
     disparities: vec4f,
 }
 
 // Four words: gain (`pack_color`); fit in 256ths in bits 0 to 8, `is_own` in bit 9, own fits in 16ths from bit 10 on;
 // disparities (`disparity_code`).
-fn pack_quad_lit(l: QuadLit) -> vec4u {
-    let own = vec4u(l.own_fits * 16.0 + 0.5) << vec4u(10u, 15u, 20u, 25u);
-    let fits = u32(0.5 + l.fit * 256.0) | select(0u, 512u, l.is_own) | own.x | own.y | own.z | own.w;
-    let first = disparity_code(l.disparities.x) | (disparity_code(l.disparities.y) << 16u);
-    let second = disparity_code(l.disparities.z) | (disparity_code(l.disparities.w) << 16u);
-    return vec4u(pack_color(l.gains), fits, first, second);
+fn pack_rectification(r: QuadRectification) -> vec4u {
+    let own = vec4u(r.center_fits * 16.0 + 0.5) << vec4u(10u, 15u, 20u, 25u);
+    let fits = u32(0.5 + r.fit * 256.0) | select(0u, 512u, r.is_own) | own.x | own.y | own.z | own.w;
+    let first = disparity_code(r.disparities.x) | (disparity_code(r.disparities.y) << 16u);
+    let second = disparity_code(r.disparities.z) | (disparity_code(r.disparities.w) << 16u);
+    return vec4u(pack_color(r.gains), fits, first, second);
 }
 
 // Estimate at pixel `i` of a quad.
-fn quad_lit(words: vec4u, i: u32) -> Lit {
-    return Lit(
+fn unpack_rectification(words: vec4u, i: u32) -> Rectification {
+    return Rectification(
         unpack_color(words.x),
         f32(words.y & 511u) * (1.0f / 256.0),
         f32((words.y >> (10u + 5u * i)) & 31u) * (1.0f / 16.0),
@@ -300,7 +300,7 @@ struct Reconstruction {
     history: vec3f,
     history_lod: f32,
     nearest: StoredSample,
-    worn: f32,
+    lod_loss_per_stop: f32,
     gains: vec3f,
     fit: f32,
     trust: f32,
@@ -315,7 +315,7 @@ struct Reconstructed {
     stored_share: f32,
 }
 
-// Alpha to show and alpha to store beside a result: those of its color, without light.
+// Alpha to show and alpha to store beside a result: blended as its color is, without the gain.
 fn result_alpha(r: Reconstructed, candidate: f32, history: f32, nearest: f32) -> vec2f {
     let old = select(history, nearest, r.keeps_nearest);
     // A share of 1 gives the alpha bit for bit.
@@ -325,8 +325,8 @@ fn result_alpha(r: Reconstructed, candidate: f32, history: f32, nearest: f32) ->
 }
 
 // Levels of detail that history loses when light doubles.
-fn worn(moved: bool, means: bool) -> f32 {
-    return select(select(WORN.y, 0.0, means), WORN.x, moved);
+fn lod_loss_per_stop(moved: bool, means: bool) -> f32 {
+    return select(select(LOD_LOSS_PER_STOP.y, 0.0, means), LOD_LOSS_PER_STOP.x, moved);
 }
 
 // Relit color.
@@ -340,7 +340,7 @@ fn reconstruct(r: Reconstruction) -> Reconstructed {
     var lost_lod = 0.0;
     if any(r.gains != vec3f(1.0)) {
         let mean = (r.gains.x + r.gains.y + r.gains.z) * (1.0f / 3.0f);
-        lost_lod = abs(ln_approx(mean) * LOG2_E) * r.worn;
+        lost_lod = abs(ln_approx(mean) * LOG2_E) * r.lod_loss_per_stop;
     }
     let history_lod = r.history_lod + lost_lod;
     let finer = clamp((r.lod - history_lod) / FINER_WIDTH, 0.0, 1.0);

@@ -2,17 +2,17 @@
 //#use past_frame
 //#use quad_plan
 //#use quad_samples
-// Gain and fit of history around shaded quads. CPU twin: `light_quad` in src/cpu/planned/quad_samples.rs. One
-// invocation a shaded quad; those of the fovea are not compared.
+// Gain and fit of history around shaded quads. CPU twin: `rectify_quad` in src/cpu/planned/quad_samples.rs. One
+// invocation a shaded quad; quads of the fovea are not compared.
 //
-// 112 reads and 1 write a quad: color, depth and observation of its own pixels and of those of eight quads around it,
-// and its neighbours; 16 bytes written. Where light changes the reads are made twice.
+// 112 reads and 1 write a quad: color, depth and observation of its own pixels and of the pixels of eight quads around
+// it, and its neighbours; 16 bytes written. Where light changes the reads are made twice.
 
 override RELIGHT_ON: u32 = 1u;
 override ANTIALIAS: u32 = 0u;
 
 @group(0) @binding(21) var observed: texture_2d_array<u32>;
-@group(0) @binding(23) var lights_out: texture_storage_2d_array<rgba32uint, write>;
+@group(0) @binding(23) var rectified_out: texture_storage_2d_array<rgba32uint, write>;
 
 fn observation_at(px: vec2u, view: u32) -> Observation {
     let words = textureLoad(observed, px, view, 0).xy;
@@ -28,8 +28,7 @@ fn is_compared(px: vec2u, view: u32) -> bool {
     return all(px < frame.size) && is_observed(textureLoad(observed, min(px, frame.size - 1u), view, 0).xy);
 }
 
-// The quad's own comparison: a mean of those of one surface, that of its first compared pixel. Its error is negative
-// without one.
+// The quad's own comparison: the mean over the surface of its first compared pixel. Its error is negative without one.
 struct Own {
     observation: Observation,
     disparity: f32,
@@ -78,7 +77,7 @@ fn neighbour_at(tap: u32, quad: vec2u, view: u32, own: Own, around: vec2u, least
     return near;
 }
 
-fn light(quad: vec2u, view: u32) -> vec4u {
+fn rectify(quad: vec2u, view: u32) -> vec4u {
     let around = textureLoad(quad_around, quad, view, 0).xy;
     let own = own_of(quad, view);
     var least = 0x1p126;
@@ -108,51 +107,51 @@ fn light(quad: vec2u, view: u32) -> vec4u {
             }
         }
     }
-    var lit = QuadLit(vec3f(1.0), 1.0, vec4f(1.0), own.observation.error >= 0.0, vec4f(INVALID_DISPARITY));
+    var r = QuadRectification(vec3f(1.0), 1.0, vec4f(1.0), own.observation.error >= 0.0, vec4f(INVALID_DISPARITY));
     if sum.weight >= 1e-6 {
         if RELIGHT_ON != 0u {
             var error = mean_error(sum);
             if ANTIALIAS != 0u {
                 error = scattered_error(sum, scatter);
             }
-            lit.gains = relight(sum, error);
+            r.gains = relight(sum, error);
         }
-        let is_relit = any(lit.gains != vec3f(1.0));
+        let is_relit = any(r.gains != vec3f(1.0));
         var with_gain = 0.0;
         for (var tap = 0u; tap < select(0u, taps, is_relit); tap++) {
             let near = neighbour_at(tap, quad, view, own, around, least);
             if near.spatial > 0.0 {
-                with_gain += errors_left(near.observation, lit.gains) * near.weight;
+                with_gain += errors_left(near.observation, r.gains) * near.weight;
             }
         }
         if !is_relit || !gain_helps(with_gain, without) {
-            lit.gains = vec3f(1.0);
+            r.gains = vec3f(1.0);
             with_gain = without;
         }
         var fit_of_quad = 0.0;
         if own.observation.error >= 0.0 {
-            fit_of_quad = own_fit(own.observation, vec3f(1.0));
+            fit_of_quad = center_fit(own.observation, vec3f(1.0));
         }
-        lit.fit = fit_around(sum, with_gain, fit_by_votes(sum, votes, fit_of_quad));
+        r.fit = fit_around(sum, with_gain, fit_by_votes(sum, votes, fit_of_quad));
         if NOISY != 0u {
-            lit.fit = noisy_fit_around(sum, with_gain);
+            r.fit = noisy_fit_around(sum, with_gain);
         }
     }
     for (var i = 0u; i < 4u; i++) {
         let px = px_of_quad(quad, i);
         if all(px < frame.size) {
-            // Not `lit.disparities[i] = ...`: FXC, which wgpu has on Windows without another compiler, cannot write
+            // Not `r.disparities[i] = ...`: FXC, which wgpu has on Windows without another compiler, cannot write
             // vectors so.
             let is_i = vec4u(0u, 1u, 2u, 3u) == vec4u(i);
-            lit.disparities = select(lit.disparities, vec4f(disparity_at(px, view)), is_i);
+            r.disparities = select(r.disparities, vec4f(disparity_at(px, view)), is_i);
             // A single noisy sample does not show whether history fits.
             if NOISY == 0u && is_compared(px, view) {
-                let fits = own_fit(observation_at(px, view), lit.gains);
-                lit.own_fits = select(lit.own_fits, vec4f(fits), is_i);
+                let fits = center_fit(observation_at(px, view), r.gains);
+                r.center_fits = select(r.center_fits, vec4f(fits), is_i);
             }
         }
     }
-    return pack_quad_lit(lit);
+    return pack_rectification(r);
 }
 
 @compute @workgroup_size(64, 1)
@@ -161,6 +160,6 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) in
     let i = invocation_of(group, invocation);
     if i < quad_count() {
         let quad = listed_quad(i);
-        textureStore(lights_out, quad, view, light(quad, view));
+        textureStore(rectified_out, quad, view, rectify(quad, view));
     }
 }

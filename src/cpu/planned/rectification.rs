@@ -2,7 +2,7 @@
 
 use super::view::View;
 use crate::kernel::antialias::{add_scatter, scattered_error};
-use crate::kernel::sparse_smr::{
+use crate::kernel::reconstruction::{
     Observation, ObservedAround, add_observation, errors_left, gain_helps, mean_error, none_around, relight, vote,
 };
 use glam::{Vec2, Vec3};
