@@ -12,9 +12,9 @@ impl Named for DebugView {
         vec![
             (Self::Quality, "weight", "Weight sum of the reservoir; with smr the level of detail of the history"),
             (Self::Age, "age", "Frames since the shown sample was rendered; wrs only"),
-            (Self::Survival, "survival", "Fraction of the history's weight that was kept"),
+            (Self::HistoryShare, "survival", "Fraction of the history's weight that was kept"),
             (Self::Rejection, "flush", "Validity of the history: reused, or why it was rejected"),
-            (Self::Gate, "gate", "Gate value"),
+            (Self::Agreement, "gate", "Gate value"),
             (Self::Motion, "motion", "Motion"),
         ]
     }
