@@ -133,6 +133,8 @@ pub fn with_options(text: &str) -> String {
         ("`info`", "afterimage info"),
         ("`color`", "--color"),
         ("`depth`", "--depth"),
+        ("`albedo`=", "--albedo "),
+        ("`albedo`", "--albedo"),
         ("`motion`=", "--motion "),
         ("`motion`", "--motion"),
         ("`motion_convention`=", "--motion-convention "),

@@ -4,9 +4,10 @@ use crate::Tracer;
 use crate::film::Film;
 use crate::sampling::{Sampling, trace_requested};
 use crate::settings::TraceSettings;
-use crate::surfaces::Surfaces;
+use crate::surfaces::{Surfaces, albedo};
 use crate::work::Spans;
 use crate::world::World;
+use afterimage::Image;
 use afterimage_lab::clock::Elapsed;
 use afterimage_lab::device::{Backend, SpanClock};
 use afterimage_lab::error::{InputError, device_lost};
@@ -43,6 +44,7 @@ pub struct TracedSource {
     of: ViewedScene,
     world: World,
     tracer: Tracer,
+    settings: TraceSettings,
     samples: TracedSamples,
     /// Cached full-rate frame of a static scene, and its time.
     still: Option<(SourceFrame, Elapsed)>,
@@ -83,7 +85,7 @@ impl TracedSource {
         let world = World::new(&of.scene);
         let tracer = Tracer::new(backend, &world, settings)
             .map_err(|e| InputError::device(&of.scene.name, e.to_string(), "trace it on the CPU"))?;
-        Ok(Self { of, world, tracer, samples, still: None, clock: SpanClock::new(backend) })
+        Ok(Self { of, world, tracer, settings, samples, still: None, clock: SpanClock::new(backend) })
     }
 
     /// Features of the scene file that are ignored or approximated.
@@ -158,7 +160,14 @@ impl TracedSource {
         let views = self.pose(request)?;
         let (seen, took) = self.clock.time(|| self.without_color(request.index, &views, true));
         let reference = SourceFrame { color: reference.map_or(seen.color, |frame| frame.color), ..seen };
-        Ok(RenderedFrame { content: Content::Surfaces, render: Some(took), ..request.answer(reference) })
+        let albedo = self.albedo(request);
+        Ok(RenderedFrame { content: Content::Surfaces, render: Some(took), albedo, ..request.answer(reference) })
+    }
+
+    /// Albedo of every pixel of the frame for which the scene was posed last, if it is requested.
+    fn albedo(&self, request: &FrameRequest) -> Option<Image<[f32; 3]>> {
+        let [view, _] = self.of.views(request.index).0;
+        request.albedo.then(|| albedo(&self.world, &view, &self.settings))
     }
 }
 
@@ -176,7 +185,8 @@ impl FrameSource for TracedSource {
         }
         let Some(sampling) = self.samples.foveated else {
             let (frame, took) = self.kept_full_rate(request)?;
-            return Ok(RenderedFrame { render: Some(took), full_rate: Some(took), ..request.answer(frame) });
+            let albedo = self.albedo(request);
+            return Ok(RenderedFrame { render: Some(took), full_rate: Some(took), albedo, ..request.answer(frame) });
         };
         // The reference has another number of samples a pixel, so its time cannot be compared with that of the foveated
         // frame.

@@ -1,6 +1,7 @@
-//! Exact, noise-free depth and motion at pixel centres.
+//! Exact, noise-free depth and motion at pixel centres, and albedo.
 
 use super::cpu;
+use super::settings::TraceSettings;
 use super::world::World;
 use afterimage::Image;
 use afterimage_lab::kernel::direction::unit;
@@ -18,6 +19,25 @@ pub struct Surfaces {
     /// Motion in pixels, y down, previous minus current position. Points behind the previous camera get a motion far
     /// off the frame.
     pub motion: Image<[f32; 2]>,
+}
+
+/// Rays of a pixel's albedo along each axis: it is a mean over the pixel, as the color is.
+const ALBEDO_RAYS: u8 = 4;
+
+/// Albedo of every pixel, linear: the reflectance that multiplies light, of the first surface that is neither a perfect
+/// mirror nor clear glass, times their tints; 0 for the sky.
+pub fn albedo(world: &World, view: &View, settings: &TraceSettings) -> Image<[f32; 3]> {
+    let rays = view.rays();
+    let offset = |i: u8| ((f32::from(i) + 0.5) / f32::from(ALBEDO_RAYS) - 0.5) * rays.jitter;
+    let places = (0..ALBEDO_RAYS).flat_map(|j| (0..ALBEDO_RAYS).map(move |i| [offset(i), offset(j)]));
+    let places: Vec<[f32; 2]> = places.collect();
+    Image::from_fn_parallel(view.geometry().size_px(), |[x, y]| {
+        let at = |[dx, dy]: &[f32; 2]| {
+            let direction = unit(rays.corner + rays.right * (x as f32 + dx) + rays.down * (y as f32 + dy));
+            cpu::albedo_along(world, rays.origin, direction, settings)
+        };
+        (places.iter().map(at).sum::<Vec3>() / places.len() as f32).to_array()
+    })
 }
 
 /// Motion of points behind the previous camera, and the bound of all motion, in pixels.

@@ -14,7 +14,7 @@ use crate::frame::{RenderedFrame, Shaded, ShadingRequest, SourceFrame};
 use glam::{DMat4, DVec3};
 
 /// Properties of a source that are known before its first frame is read.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SourceInfo {
     /// Name as the user gave it.
     pub name: String,
@@ -28,6 +28,8 @@ pub struct SourceInfo {
     pub hfov_deg: Option<f32>,
     /// Whether all frames show the same picture: nothing moves, and every pixel keeps its surface point.
     pub still: bool,
+    /// Whether frames have the albedo of every pixel, if it is [requested](FrameRequest::albedo).
+    pub has_albedo: bool,
 }
 
 /// Pose of a camera that a viewer can steer, and a speed to steer it with.

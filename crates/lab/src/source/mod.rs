@@ -21,7 +21,7 @@ pub use afterimage_eval::source::{
     AnalyticSource, CameraPose, FrameRequest, FrameSource, SourceInfo, Wanted, analytic, reference_offsets_px,
 };
 pub use color_frames::ColorFrames;
-pub use exr_file::ChannelNames;
+pub use exr_file::{AlbedoLayer, ChannelNames};
 pub use limits::ReadLimits;
 pub use open::{is_scene, open, open_named};
 pub use raster::RasterSource;

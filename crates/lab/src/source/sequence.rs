@@ -66,14 +66,15 @@ impl SequenceSource {
     /// - [`Limit`](InputError::Limit) and [`NotSupported`](InputError::NotSupported): as of
     ///   [`ExrHeader::open_passes`].
     /// - [`Invalid`](InputError::Invalid): a frame is damaged, truncated or without color or a channel of `names`;
-    ///   differs from the first in size, or in whether it has depth or motion; a frame number is missing, or missing in
+    ///   differs from the first in size, or in whether it has depth, motion or albedo; a frame number is missing, or missing in
     ///   a pass; several frames have no motion vectors of a known convention; or `cameras.json` is invalid or belongs
     ///   to other frames.
     pub fn open_named(folder: &Path, limits: &ReadLimits, names: &ChannelNames) -> Result<Self, InputError> {
         let name = folder.display().to_string();
         let mut frames = Frames { passes: passes(folder)?, limits: *limits, names: names.clone() };
+        let mut said = vec![];
         if frames.passes.len() > 1 {
-            frames.passes = used_passes(&name, frames.passes, limits, names)?;
+            (frames.passes, said) = used_passes(&name, frames.passes, limits, names)?;
             check_same_frames(&name, &frames.passes)?;
         }
         let numbers = frames.passes.first().map_or(vec![], |pass| pass.numbers.clone());
@@ -85,7 +86,7 @@ impl SequenceSource {
                 has_depth: false,
                 motion: None,
                 cameras: None,
-                warnings: still.warnings().to_vec(),
+                warnings: all_said(said, still.warnings()),
                 contents: still.contents().to_vec(),
                 still: Some(still),
             });
@@ -96,7 +97,7 @@ impl SequenceSource {
         if let Some(c) = &cameras {
             c.check_size(first.size())?;
         }
-        let (warnings, contents) = (first.warnings().to_vec(), first.contents().to_vec());
+        let (warnings, contents) = (all_said(said, first.warnings()), first.contents().to_vec());
         let info = SourceInfo {
             name,
             size: first.size(),
@@ -104,6 +105,7 @@ impl SequenceSource {
             fps: cameras.as_ref().and_then(|c| c.fps).or(first.fps()),
             hfov_deg: cameras.as_ref().and_then(|c| c.hfov_deg),
             still: false,
+            has_albedo: first.has_albedo(),
         };
         let cameras = match cameras {
             Some(c) => c.assign(&numbers)?.map(|poses| (c, poses)),
@@ -119,13 +121,19 @@ impl SequenceSource {
     }
 }
 
-/// The passes from which channels are read, by the first files of all.
+/// What was said of all passes, and of those that are read.
+fn all_said(mut of_all: Vec<String>, of_used: &[String]) -> Vec<String> {
+    of_all.retain(|line| !of_used.contains(line));
+    [of_used, &of_all].concat()
+}
+
+/// The passes from which channels are read, by the first files of all, and what was left out or assumed of all.
 fn used_passes(
     folder: &str,
     passes: Vec<PassFiles>,
     limits: &ReadLimits,
     names: &ChannelNames,
-) -> Result<Vec<PassFiles>, InputError> {
+) -> Result<(Vec<PassFiles>, Vec<String>), InputError> {
     let first: Vec<PassFile> = passes.iter().map(|pass| PassFile { pass: &pass.pass, path: &pass.files[0] }).collect();
     let is_whole = |file: &&PassFile| {
         let header = ExrHeader::open_passes(&[**file], limits, &ChannelNames::default());
@@ -147,7 +155,8 @@ fn used_passes(
         return Err(header.without_motion(folder));
     }
     let used = header.used_files();
-    Ok(passes.into_iter().enumerate().filter(|(i, _)| used.contains(i)).map(|(_, pass)| pass).collect())
+    let passes = passes.into_iter().enumerate().filter(|(i, _)| used.contains(i)).map(|(_, pass)| pass);
+    Ok((passes.collect(), header.warnings().to_vec()))
 }
 
 impl FrameSource for SequenceSource {
@@ -170,7 +179,10 @@ impl FrameSource for SequenceSource {
         }
         let (file, step) = playback(index, self.frames.count() as u64);
         let header = self.frames.header(file)?;
-        if header.size() != self.info.size || header.has_depth() != self.has_depth {
+        if header.size() != self.info.size
+            || header.has_depth() != self.has_depth
+            || header.has_albedo() != self.info.has_albedo
+        {
             return Err(InputError::invalid(
                 header.subject(),
                 "has changed since the sequence was opened",
@@ -181,7 +193,7 @@ impl FrameSource for SequenceSource {
             Step::Backward => Vectors::ToNext,
             Step::First | Step::Forward => Vectors::ToPrevious,
         };
-        let ExrFrame { color, depth, motion, nonfinite } = header.read(vectors)?;
+        let ExrFrame { color, depth, motion, albedo, nonfinite } = header.read(vectors)?;
         let previous_from_current = self.cameras.as_ref().and_then(|(cameras, poses)| {
             let previous = match step {
                 Step::First => return None,
@@ -192,7 +204,8 @@ impl FrameSource for SequenceSource {
         });
         let cut = step == Step::First;
         let frame = SourceFrame { color, depth, motion, trust: None, previous_from_current, cut, nonfinite };
-        Ok(RenderedFrame::full_rate(index, request.gaze_px, frame))
+        let albedo = albedo.filter(|_| request.albedo);
+        Ok(RenderedFrame { albedo, ..RenderedFrame::full_rate(index, request.gaze_px, frame) })
     }
 }
 
@@ -241,6 +254,7 @@ fn check_headers(frames: &Frames, input: &str) -> Result<ExrHeader, InputError> 
                 ("depth", h.has_depth()),
                 ("motion vectors to the previous frame", h.has(Vectors::ToPrevious)),
                 ("motion vectors to the next frame", h.has(Vectors::ToNext)),
+                ("albedo", h.has_albedo()),
             ]
         };
         for ((what, here), (_, there)) in traits(&header).into_iter().zip(traits(&first)) {

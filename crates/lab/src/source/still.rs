@@ -23,6 +23,7 @@ use std::path::Path;
 pub struct StillSource {
     info: SourceInfo,
     frame: SourceFrame,
+    albedo: Option<Image<[f32; 3]>>,
     warnings: Vec<String>,
     contents: Vec<String>,
 }
@@ -60,7 +61,7 @@ impl StillSource {
             "png" | "jpg" | "jpeg" => {
                 let (color, warnings) = guarded(&subject, || decode_8_or_16_bit(path, &subject, limits))?;
                 let frame = SourceFrame { color, ..SourceFrame::without_images(None, false) };
-                Ok(Self { warnings, ..Self::new(subject, frame, None) })
+                Ok(Self { warnings, ..Self::new(subject, frame, None, None) })
             }
             _ => Err(InputError::not_supported(
                 subject,
@@ -77,13 +78,13 @@ impl StillSource {
         if let Some(c) = &cameras {
             c.check_size(header.size())?;
         }
-        let ExrFrame { color, depth, nonfinite, .. } = header.read(Vectors::Skip)?;
+        let ExrFrame { color, depth, albedo, nonfinite, .. } = header.read(Vectors::Skip)?;
         let frame = SourceFrame { color, depth, nonfinite, ..SourceFrame::without_images(None, false) };
         let (warnings, contents) = (header.warnings().to_vec(), header.contents().to_vec());
-        Ok(Self { warnings, contents, ..Self::new(name, frame, cameras) })
+        Ok(Self { warnings, contents, ..Self::new(name, frame, albedo, cameras) })
     }
 
-    fn new(name: String, frame: SourceFrame, cameras: Option<Cameras>) -> Self {
+    fn new(name: String, frame: SourceFrame, albedo: Option<Image<[f32; 3]>>, cameras: Option<Cameras>) -> Self {
         let info = SourceInfo {
             name,
             size: frame.color.size(),
@@ -91,8 +92,9 @@ impl StillSource {
             fps: cameras.as_ref().and_then(|c| c.fps),
             hfov_deg: cameras.as_ref().and_then(|c| c.hfov_deg),
             still: true,
+            has_albedo: albedo.is_some(),
         };
-        Self { info, frame, warnings: vec![], contents: vec![] }
+        Self { info, frame, albedo, warnings: vec![], contents: vec![] }
     }
 
     /// Replaces the name.
@@ -117,7 +119,8 @@ impl FrameSource for StillSource {
 
     fn render(&mut self, request: &FrameRequest) -> Result<RenderedFrame, InputError> {
         let frame = SourceFrame { cut: request.index == 0, ..self.frame.clone() };
-        Ok(RenderedFrame::full_rate(request.index, request.gaze_px, frame))
+        let albedo = self.albedo.clone().filter(|_| request.albedo);
+        Ok(RenderedFrame { albedo, ..RenderedFrame::full_rate(request.index, request.gaze_px, frame) })
     }
 }
 

@@ -106,6 +106,7 @@ impl ViewedScene {
             fps: Some(fps),
             hfov_deg: Some(camera.geometry().hfov_deg()),
             still: scene.duration_s() <= 0.0 && camera.is_still(&scene),
+            has_albedo: true,
         };
         Ok(Self { scene: Arc::new(scene), camera, fps, info })
     }

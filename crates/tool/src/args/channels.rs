@@ -1,8 +1,8 @@
 //! Options that name the channels of EXR frames and their conventions.
 
 use crate::failure::Failure;
-use afterimage_lab::source::ChannelNames;
 use afterimage_lab::source::exr_file::{DepthReading, MotionReading};
+use afterimage_lab::source::{AlbedoLayer, ChannelNames};
 use clap::Args;
 
 /// Heading of these options in the help.
@@ -26,6 +26,9 @@ pub struct ChannelArgs {
     /// unreal|nuke, or view|inverse|forward|reversed|orthographic[,near=D][,far=D][,scale=N]
     #[arg(long, value_name = "NAME|LIST", help_heading = HEADING)]
     pub depth_convention: Option<DepthReading>,
+    /// Layer of the albedo, which is an option of the frames that need it.
+    #[arg(skip)]
+    pub albedo: AlbedoLayer,
 }
 
 impl ChannelArgs {
@@ -37,6 +40,7 @@ impl ChannelArgs {
             motion: self.motion.clone(),
             motion_convention: self.motion_convention,
             depth_convention: self.depth_convention,
+            albedo: self.albedo.clone(),
             assume_own_convention: false,
         }
     }

@@ -167,6 +167,34 @@ fn what_does_not_move_or_cast_shadows_is_said() {
 }
 
 #[test]
+fn deferred_shading_is_for_scenes_and_says_when_it_falls_back() {
+    let folder = Folder::new();
+    let out = folder.text("out");
+    let frames = afterimage_testing::workspace().join("fixtures/sequences/lateral_160x90");
+    let shading = ["--shading", "deferred"];
+    refuses(&run(frames.to_str().unwrap(), &out, &shading), &["--shading: ", "has frames already", "give a scene"]);
+    refuses(&run("analytic:still", &out, &shading), &["--shading: ", "has frames already"]);
+    let traced = [&shading[..], &["--source", "trace"]].concat();
+    refuses(&run("builtin:cubes", &out, &traced), &["--shading: ", "rasterised scenes", "--source trace"]);
+    assert!(!folder.path("out").exists(), "nothing was written");
+    let said = |name: &str, extensions: Value, shading: &str| {
+        let input = scene(&folder, name, |file| {
+            file.as_object_mut().unwrap().remove("animations");
+            file["materials"] = json!([{"extensions": extensions}]);
+            file["meshes"][0]["primitives"][0]["material"] = json!(0);
+        });
+        let output = tool(&run(&input, &out, &words(&format!("--size 32x18 {QUICK} --shading {shading}"))));
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let stretched = || json!({"KHR_materials_anisotropy": {"anisotropyStrength": 0.5}});
+    let falls_back = "--shading deferred: the scene has materials that are drawn forward, and so is all of it";
+    assert_eq!(said("stretched.gltf", stretched(), "deferred").matches(falls_back).count(), 1);
+    assert!(!said("stretched.gltf", stretched(), "forward").contains("--shading"));
+    assert!(!said("plain.gltf", json!({}), "deferred").contains("--shading"));
+}
+
+#[test]
 fn a_sun_leaves_its_scene_its_exposure() {
     let folder = Folder::new();
     let exposure = |sun: f32| {

@@ -1,5 +1,6 @@
 //! The command-line tool as a process: files and errors.
 
+mod albedo;
 mod bench;
 mod cameras;
 mod channels;

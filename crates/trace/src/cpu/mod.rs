@@ -1,5 +1,6 @@
 //! Path tracer on the CPU: the reference for the GPU tracer, and the fallback without a GPU.
 
+mod albedo;
 mod lights;
 mod path;
 mod surface;
@@ -13,6 +14,7 @@ use afterimage::kernel::rng::{Purpose, path_draws, stream_key};
 use afterimage_lab::kernel::direction::unit;
 use afterimage_lab::scene::effects::Effects;
 use afterimage_lab::view::View;
+pub(crate) use albedo::albedo_along;
 use glam::Vec3;
 use path::{DRAWS_CAMERA, Paths};
 use rayon::prelude::*;

@@ -127,6 +127,7 @@ impl AnalyticSource {
                 fps: Some(fps),
                 hfov_deg: Some(hfov_deg),
                 still: kind == Kind::Still,
+                has_albedo: false,
             },
             kind,
             scene: scene(),

@@ -1,6 +1,6 @@
 //! Assigns the channels of a frame's EXR files to color, depth and motion.
 
-use super::layout::{DEPTH, LEAVES, MOTION, MotionLayout, candidate};
+use super::layout::{ALBEDO, DEPTH, LEAVES, MOTION, MotionLayout, Name, candidate};
 use super::reading::{DepthReading, MotionReading};
 
 /// Channels and conventions that the user names; the others are recognised by their names. Case is ignored.
@@ -16,8 +16,22 @@ pub struct ChannelNames {
     pub motion_convention: Option<MotionReading>,
     /// How the depth is stored.
     pub depth_convention: Option<DepthReading>,
+    /// Which layer is the albedo.
+    pub albedo: AlbedoLayer,
     /// Whether to read motion vectors of an unknown convention in the library's own: to find theirs.
     pub assume_own_convention: bool,
+}
+
+/// The layer of the albedo.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum AlbedoLayer {
+    /// None is read.
+    #[default]
+    Skip,
+    /// One that its name tells, if there is one.
+    Recognised,
+    /// One that the user names.
+    Named(String),
 }
 
 /// Name of a channel, split into its parts.
@@ -116,6 +130,8 @@ pub(super) struct Roles {
     pub color: [ChannelId; 3],
     pub depth: Option<(ChannelId, DepthReading)>,
     pub motion: Option<MotionChannels>,
+    /// Red, green, blue.
+    pub albedo: Option<[ChannelId; 3]>,
     /// Why there is no motion, if a layer may hold it.
     pub unknown_motion: Option<UnknownMotion>,
     /// What was chosen among several, a line each.
@@ -154,14 +170,16 @@ impl Roles {
         let of_view: Vec<ChannelName> = channels.iter().filter(|c| c.view == view).cloned().collect();
         let (motion, unknown_motion) = motion_roles(&of_view, names, &mut warnings)?;
         let depth = depth_role(&of_view, names, motion, &mut warnings)?;
-        Ok(Self { color, depth, motion, unknown_motion, warnings })
+        let albedo = albedo_role(&of_view, names, color, &mut warnings)?;
+        Ok(Self { color, depth, motion, albedo, unknown_motion, warnings })
     }
 
     /// Channels that have a role.
     pub fn channels(&self) -> Vec<ChannelId> {
         let vectors = self.motion.iter().flat_map(|m| [Some(m.to_previous), m.to_next]).flatten();
         let depth = self.depth.map(|(id, _)| id);
-        self.color.into_iter().chain(depth).chain(vectors.flat_map(|v| v.channels)).collect()
+        let albedo = self.albedo.into_iter().flatten();
+        self.color.into_iter().chain(depth).chain(vectors.flat_map(|v| v.channels)).chain(albedo).collect()
     }
 }
 
@@ -205,13 +223,15 @@ fn sibling(channels: &[ChannelName], of: &ChannelName, leaf: &str) -> Option<Cha
         .map(id)
 }
 
+/// Red, green and blue of a layer whose red is `r`.
+fn rgb_from(channels: &[ChannelName], r: &ChannelName) -> Option<[ChannelId; 3]> {
+    let is_red = r.leaf == "r";
+    is_red.then(|| Some([id(r), sibling(channels, r, "g")?, sibling(channels, r, "b")?])).flatten()
+}
+
 /// The color, and the view of a stereo picture that it belongs to.
 fn find_color(channels: &[ChannelName], warnings: &mut Vec<String>) -> Option<([ChannelId; 3], u8)> {
-    let complete = channels.iter().filter(|c| c.leaf == "r").filter_map(|r| {
-        let g = sibling(channels, r, "g")?;
-        let b = sibling(channels, r, "b")?;
-        Some((r, [id(r), g, b]))
-    });
+    let complete = channels.iter().filter_map(|r| Some((r, rgb_from(channels, r)?)));
     let complete: Vec<_> = complete.collect();
     let best = complete.iter().min_by_key(|(r, _)| (color_rank(r), r.view, !r.plain, r.layer.len()));
     if let Some((best, color)) = best {
@@ -232,10 +252,8 @@ fn find_color(channels: &[ChannelName], warnings: &mut Vec<String>) -> Option<([
 
 /// The color of the layer, or of the channel, that the user names.
 fn named_color(channels: &[ChannelName], name: &str) -> Result<([ChannelId; 3], u8), NoRoles> {
-    let rgb = channels
-        .iter()
-        .filter(|c| c.leaf == "r" && c.is_in(name))
-        .find_map(|r| Some(([id(r), sibling(channels, r, "g")?, sibling(channels, r, "b")?], r.view)));
+    let mut of_layer = channels.iter().filter(|c| c.is_in(name));
+    let rgb = of_layer.find_map(|r| Some((rgb_from(channels, r)?, r.view)));
     let grey = || channels.iter().find(|c| c.is_called(name)).map(|c| ([id(c); 3], c.view));
     rgb.or_else(grey).ok_or_else(|| NoRoles::Named { role: "color", name: name.to_owned() })
 }
@@ -287,6 +305,35 @@ fn find_depth(channels: &[ChannelName]) -> Option<(&ChannelName, DepthReading)> 
     let plain =
         |c: &&ChannelName| c.plain && (c.leaf == "depth" || c.leaf == "z" && sibling(channels, c, "x").is_none());
     known.or_else(|| channels.iter().find(plain).map(|channel| (channel, DepthReading::default())))
+}
+
+/// The albedo. A layer of a known name that lacks a channel is left out, and so is the picture.
+fn albedo_role(
+    channels: &[ChannelName],
+    names: &ChannelNames,
+    color: [ChannelId; 3],
+    warnings: &mut Vec<String>,
+) -> Result<Option<[ChannelId; 3]>, NoRoles> {
+    let name = match &names.albedo {
+        AlbedoLayer::Skip => return Ok(None),
+        AlbedoLayer::Recognised => return Ok(known_albedo(channels, color, warnings)),
+        AlbedoLayer::Named(name) => name,
+    };
+    let found = channels.iter().filter(|c| c.is_in(name)).find_map(|r| rgb_from(channels, r));
+    found.map(Some).ok_or_else(|| NoRoles::Named { role: "albedo", name: name.clone() })
+}
+
+fn known_albedo(channels: &[ChannelName], color: [ChannelId; 3], warnings: &mut Vec<String>) -> Option<[ChannelId; 3]> {
+    let of_layer = |layer: &'static Name| {
+        channels.iter().filter(move |c| c.in_layer(|own| layer.fits(own)) && !color.contains(&id(c)))
+    };
+    let found = ALBEDO.iter().flat_map(of_layer).find_map(|r| rgb_from(channels, r));
+    let incomplete = ALBEDO.iter().flat_map(of_layer).find(|c| ["r", "g", "b"].contains(&c.leaf.as_str()));
+    if let (None, Some(channel)) = (found, incomplete) {
+        let layer = channel.layer_name();
+        warnings.push(format!("its albedo {layer} lacks a channel of R, G, B, and is left out"));
+    }
+    found
 }
 
 /// The motion, or a layer that may be it.

@@ -16,6 +16,7 @@ use exr::prelude::f16;
 use rayon::prelude::*;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
+use std::slice::from_mut;
 
 /// Decoded bytes per batch of chunks. More occupies more cores and takes as much more memory.
 const BATCH_BYTES: usize = 64 << 20;
@@ -29,6 +30,8 @@ pub struct ExrFrame {
     pub depth: Option<Image<f32>>,
     /// Motion vectors in pixels, y down: position of a point in the other frame minus that in this one. NaN is kept.
     pub motion: Option<Image<[f32; 2]>>,
+    /// Albedo of Rec. 709 primaries. NaN and infinities are kept: there it is not known.
+    pub albedo: Option<Image<[f32; 3]>>,
     /// Number of color pixels with a NaN or an infinity.
     pub nonfinite: u64,
 }
@@ -58,7 +61,20 @@ impl ExrHeader {
                 file.read_part(&mut open, part - file.first_part, &mut planes)?;
             }
         }
-        planes.finish(self).map_err(|e| InputError::invalid(&self.subject, e.to_string(), "export it again"))
+        let frame = planes.finish(self);
+        let frame = frame.map_err(|e| InputError::invalid(&self.subject, e.to_string(), "export it again"))?;
+        self.check_albedo(frame.albedo.as_ref())?;
+        Ok(frame)
+    }
+
+    /// Refuses an albedo that is known nowhere.
+    fn check_albedo(&self, albedo: Option<&Image<[f32; 3]>>) -> Result<(), InputError> {
+        let is_known = |albedo: &Image<[f32; 3]>| albedo.pixels().iter().any(|a| a.iter().all(|v| v.is_finite()));
+        if albedo.is_none_or(is_known) {
+            return Ok(());
+        }
+        let expected = "expected numbers from 0 to 1; export it again, or leave it out with `albedo`=off";
+        Err(InputError::invalid(&self.subject, "its albedo is NaN or infinite at every pixel", expected))
     }
 }
 
@@ -180,6 +196,7 @@ enum Slot {
     Color(usize),
     Depth,
     Motion(usize, (f32, f32)),
+    Albedo(usize),
 }
 
 /// Images of a frame under construction.
@@ -188,6 +205,7 @@ struct Planes {
     color: Vec<[f32; 3]>,
     depth: Option<Vec<f32>>,
     motion: Option<Vec<[f32; 2]>>,
+    albedo: Option<Vec<[f32; 3]>>,
 }
 
 impl Planes {
@@ -195,6 +213,7 @@ impl Planes {
         let roles = &header.roles;
         let mut slots: Vec<_> = (0..3).map(|i| (roles.color[i], Slot::Color(i))).collect();
         slots.extend(roles.depth.map(|(id, _)| (id, Slot::Depth)));
+        slots.extend(roles.albedo.iter().flat_map(|ids| (0..3).map(|i| (ids[i], Slot::Albedo(i)))));
         if vectors != Vectors::Skip {
             let missing = || missing_vectors(header, vectors);
             let motion = roles.motion.ok_or_else(missing)?;
@@ -209,6 +228,7 @@ impl Planes {
             color: vec![[0.0; 3]; pixels],
             depth: roles.depth.map(|_| vec![0.0; pixels]),
             motion: (vectors != Vectors::Skip).then(|| vec![[0.0; 2]; pixels]),
+            albedo: roles.albedo.map(|_| vec![[0.0; 3]; pixels]),
         })
     }
 
@@ -258,6 +278,11 @@ impl Planes {
                     convert(samples, kind, to_px, out);
                 }
             }
+            Slot::Albedo(i) => {
+                if let Some(albedo) = &mut self.albedo {
+                    convert(samples, kind, (1.0, 0.0), albedo[pixels].iter_mut().map(|a| &mut a[i]));
+                }
+            }
         }
     }
 
@@ -268,9 +293,13 @@ impl Planes {
             self.color = cut(&self.color, [0.0; 3], size, window);
             self.depth = self.depth.map(|depth| cut(&depth, f32::NAN, size, window));
             self.motion = self.motion.map(|motion| cut(&motion, [0.0; 2], size, window));
+            self.albedo = self.albedo.map(|albedo| cut(&albedo, [f32::NAN; 3], size, window));
         }
         let nonfinite = blacken_nonfinite(&mut self.color);
         header.color_space.convert(&mut self.color);
+        // Of an unknown albedo the conversion would make black.
+        let known = self.albedo.iter_mut().flatten().filter(|albedo| albedo.iter().all(|v| v.is_finite()));
+        known.for_each(|albedo| header.color_space.convert(from_mut(albedo)));
         let reading = header.roles.depth.map_or_else(DepthReading::default, |(_, reading)| reading);
         for d in self.depth.iter_mut().flatten() {
             *d = reading.distance(*d);
@@ -279,6 +308,7 @@ impl Planes {
             color: Image::from_pixels(size, self.color)?,
             depth: self.depth.map(|d| Image::from_pixels(size, d)).transpose()?,
             motion: self.motion.map(|m| Image::from_pixels(size, m)).transpose()?,
+            albedo: self.albedo.map(|a| Image::from_pixels(size, a)).transpose()?,
             nonfinite,
         })
     }

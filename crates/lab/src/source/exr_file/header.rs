@@ -1,6 +1,6 @@
 //! The header of an EXR file, and the checks that need no pixel: size, channels, and completeness of the file.
 
-use super::channels::{ChannelName, ChannelNames, NoRoles, Roles, below};
+use super::channels::{AlbedoLayer, ChannelName, ChannelNames, NoRoles, Roles, below};
 use super::color_space::ColorSpace;
 use super::reading::{DepthReading, MotionReading};
 use super::{exr_error, guarded};
@@ -114,11 +114,14 @@ impl ExrHeader {
             opened.push(file);
         }
         let full_names: Vec<String> = channels.iter().map(|n| n.full_name.clone()).collect();
-        let roles = Roles::find(&channels, names).map_err(|missing| match missing {
+        let mut roles = Roles::find(&channels, names).map_err(|missing| match missing {
             NoRoles::Color => missing_color(subject, &full_names),
             NoRoles::Named { role, name } => missing_channel(subject, role, &name, &full_names),
         })?;
         let headers: Vec<(&str, &Header)> = opened.iter().flat_map(|f| f.file.headers()).collect();
+        if names.albedo == AlbedoLayer::Recognised {
+            leave_out_albedo_of_another_size(&headers, &mut roles);
+        }
         let (size, window) = checked_size(subject, &headers, &roles, limits)?;
         let color_space = match roles.color {
             // Grey has no primaries.
@@ -179,6 +182,11 @@ impl ExrHeader {
     /// Whether there is a depth channel.
     pub fn has_depth(&self) -> bool {
         self.roles.depth.is_some()
+    }
+
+    /// Whether there is an albedo.
+    pub fn has_albedo(&self) -> bool {
+        self.roles.albedo.is_some()
     }
 
     /// The files from which channels are read, by their place among the given ones.
@@ -355,10 +363,22 @@ fn missing_channel(subject: &str, role: &str, name: &str, names: &[String]) -> I
     let expected = match role {
         "motion" => "a layer with X/Y, U/V or R/G, or two channels as a.x,a.y",
         "color" => "a layer with R/G/B, or one channel",
+        "albedo" => "a layer with R/G/B",
         _ => "a channel or a layer",
     };
     let problem = format!("has no {name} for the {role}; it has {}", listed(names));
     InputError::invalid(subject, problem, format!("expected {expected} for `{role}`"))
+}
+
+/// Leaves out an albedo that nobody named, and that has not the pixels of the color.
+fn leave_out_albedo_of_another_size(headers: &[(&str, &Header)], roles: &mut Roles) {
+    let window = |part: usize| (headers[part].1.layer_size, headers[part].1.own_attributes.layer_position);
+    let own = window(roles.color[0].0);
+    if let Some((part, _)) = roles.albedo.into_iter().flatten().find(|id| window(id.0) != own) {
+        let [found, expected] = [window(part).0, own.0].map(|Vec2(w, h)| format!("{w}x{h}"));
+        roles.albedo = None;
+        roles.warnings.push(format!("its albedo has {found} pixels, not the color's {expected}, and is left out"));
+    }
 }
 
 /// Checks every part in use, and returns the frame's size, and where it lies in what all of them store. `headers` are
@@ -380,7 +400,7 @@ fn checked_size(
             return Err(InputError::not_supported(
                 subject,
                 "has parts of different sizes",
-                "expected color, depth and motion of one size; export them again",
+                "expected color, depth, motion and albedo of one size; export them again",
             ));
         }
     }

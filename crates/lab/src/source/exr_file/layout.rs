@@ -24,6 +24,17 @@ pub(super) enum Name {
     EndsWith(&'static str),
 }
 
+/// Layers of albedo, in lower case; the first that a file has is read. The sum of diffuse and specular albedo comes
+/// before the diffuse one.
+pub(super) const ALBEDO: [Name; 6] = [
+    Name::Is("denoising albedo"),
+    Name::Is("albedo"),
+    Name::Is("diffuse_albedo"),
+    Name::Is("diffusefilter"),
+    Name::Is("vraydiffusefilter"),
+    Name::Is("diffcol"),
+];
+
 impl Name {
     pub fn fits(self, layer: &str) -> bool {
         match self {

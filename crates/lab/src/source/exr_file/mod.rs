@@ -16,6 +16,7 @@
 //! | depth, distance along the view axis | `<layer>.Depth.Z` or `.V`; Unreal's; `Z`; `depth` |
 //! | motion, Blender's | `<layer>.Vector.X/Y/Z/W`: with y **up**, X/Y are previous minus current, Z/W are current minus next |
 //! | motion, plain | `motion.X/Y/Z/W`: with y **down**, X/Y are previous minus current, Z/W are **next minus current** |
+//! | albedo, if it is asked for | `<layer>.R/G/B` with a layer `Denoising Albedo` or `DiffCol` (Blender), `albedo`, `diffuse_albedo` (Arnold), `DiffuseFilter` (V-Ray) |
 //! | motion, others | Unreal's Movie Render Queue, Arnold's `motionvector.R/G`, Nuke's `backward.u/v` and `forward.u/v` |
 //!
 //! # Color
@@ -33,7 +34,7 @@ mod layout;
 mod reading;
 mod write;
 
-pub use channels::ChannelNames;
+pub use channels::{AlbedoLayer, ChannelNames};
 pub use decode::ExrFrame;
 pub use header::{ExrHeader, PassFile, Vectors};
 pub use reading::{DepthKind, DepthReading, MotionReading};

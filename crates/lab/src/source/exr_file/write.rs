@@ -36,12 +36,14 @@ pub struct FrameToWrite<'a> {
     pub motion: Option<&'a Image<[f32; 2]>>,
     /// Motion vectors in pixels, y down, next minus current, written to `motion.Z/W` as float.
     pub motion_to_next: Option<&'a Image<[f32; 2]>>,
+    /// Albedo, written to `albedo.R/G/B` as half float.
+    pub albedo: Option<&'a Image<[f32; 3]>>,
 }
 
 impl<'a> FrameToWrite<'a> {
     /// A frame of color alone, stored as half float.
     pub fn color(color: &'a Image<[f32; 3]>) -> Self {
-        Self { color, format: ColorFormat::Half, depth: None, motion: None, motion_to_next: None }
+        Self { color, format: ColorFormat::Half, depth: None, motion: None, motion_to_next: None, albedo: None }
     }
 }
 
@@ -51,11 +53,12 @@ impl<'a> FrameToWrite<'a> {
 /// If the images differ in size or are empty, or the file cannot be written.
 pub fn write(path: &Path, frame: &FrameToWrite) -> io::Result<()> {
     let size = frame.color.size();
-    let others = [frame.depth.map(Image::size), frame.motion.map(Image::size), frame.motion_to_next.map(Image::size)];
+    let [motion, to_next] = [frame.motion, frame.motion_to_next].map(|motion| motion.map(Image::size));
+    let others = [frame.depth.map(Image::size), motion, to_next, frame.albedo.map(Image::size)];
     if size.contains(&0) || others.into_iter().flatten().any(|s| s != size) {
         return Err(io::Error::new(
             io::ErrorKind::InvalidInput,
-            "color, depth and motion must have one size of at least 1x1 pixels",
+            "color, depth, motion and albedo must have one size of at least 1x1 pixels",
         ));
     }
     write_whole(path, |out| write_layer(out, size, channels(frame)))
@@ -91,16 +94,9 @@ fn write_layer(out: &mut BufWriter<File>, size: [u32; 2], channels: Vec<AnyChann
 }
 
 fn channels(frame: &FrameToWrite) -> Vec<AnyChannel<FlatSamples>> {
-    let mut channels = Vec::new();
-    for (i, name) in ["R", "G", "B"].into_iter().enumerate() {
-        let values = frame.color.pixels().iter().map(|p| p[i]);
-        let samples = match frame.format {
-            ColorFormat::Half => {
-                FlatSamples::F16(values.map(|v| f16::from_f32(v.clamp(-HALF_MAX, HALF_MAX))).collect())
-            }
-            ColorFormat::Float => FlatSamples::F32(values.collect()),
-        };
-        channels.push(AnyChannel::new(name, samples));
+    let mut channels = rgb(["R", "G", "B"], frame.color, frame.format);
+    if let Some(albedo) = frame.albedo {
+        channels.extend(rgb(["albedo.R", "albedo.G", "albedo.B"], albedo, ColorFormat::Half));
     }
     if let Some(depth) = frame.depth {
         let samples = FlatSamples::F32(depth.pixels().to_vec());
@@ -116,4 +112,18 @@ fn channels(frame: &FrameToWrite) -> Vec<AnyChannel<FlatSamples>> {
         }
     }
     channels
+}
+
+fn rgb(names: [&str; 3], image: &Image<[f32; 3]>, format: ColorFormat) -> Vec<AnyChannel<FlatSamples>> {
+    let channel = |(i, name): (usize, &str)| {
+        let values = image.pixels().iter().map(|p| p[i]);
+        let samples = match format {
+            ColorFormat::Half => {
+                FlatSamples::F16(values.map(|v| f16::from_f32(v.clamp(-HALF_MAX, HALF_MAX))).collect())
+            }
+            ColorFormat::Float => FlatSamples::F32(values.collect()),
+        };
+        AnyChannel::new(name, samples)
+    };
+    names.into_iter().enumerate().map(channel).collect()
 }

@@ -9,7 +9,7 @@ mod motion;
 use afterimage::Image;
 use afterimage_lab::error::InputError;
 use afterimage_lab::source::ReadLimits;
-use afterimage_lab::source::exr_file::{ColorFormat, FrameToWrite, write};
+use afterimage_lab::source::exr_file::{FrameToWrite, write};
 use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Layer, LayerAttributes, SmallVec, WritableImage};
 use std::path::{Path, PathBuf};
 
@@ -48,11 +48,10 @@ fn write_frame(path: &Path, size: [u32; 2], extras: Extras) {
     let (color, depth) = (picture(size), Image::filled(size, 2.0f32));
     let (motion, to_next) = (vectors(size, 1.0), vectors(size, 3.0));
     let frame = FrameToWrite {
-        color: &color,
-        format: ColorFormat::Half,
         depth: extras.depth.then_some(&depth),
         motion: extras.motion.then_some(&motion),
         motion_to_next: extras.to_next.then_some(&to_next),
+        ..FrameToWrite::color(&color)
     };
     write(path, &frame).unwrap();
 }

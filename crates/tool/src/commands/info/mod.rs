@@ -15,7 +15,7 @@ use afterimage_eval::exposure::Exposure;
 use afterimage_lab::error::InputError;
 use afterimage_lab::source;
 use afterimage_lab::source::exr_file::MotionReading;
-use afterimage_lab::source::{ChannelNames, FrameSource, ReadLimits, SceneOptions, SequenceSource};
+use afterimage_lab::source::{AlbedoLayer, ChannelNames, FrameSource, ReadLimits, SceneOptions, SequenceSource};
 use clap::Args;
 use motion::{Reader, motion_info, with_option};
 use std::path::Path;
@@ -72,7 +72,7 @@ pub fn info(args: &InfoArgs) -> Result<(), Failure> {
         return Ok(camera::camera_info(&args.input)?);
     }
     let limits = ReadLimits::from_megapixels(args.max_megapixels);
-    let names = ChannelNames { assume_own_convention: true, ..args.channels.names() };
+    let names = ChannelNames { assume_own_convention: true, albedo: AlbedoLayer::Recognised, ..args.channels.names() };
     let path = Path::new(&args.input);
     if path.is_dir() {
         let mut source = SequenceSource::open_named(path, &limits, &names)?;

@@ -22,15 +22,15 @@ use crate::progress;
 use crate::report::cameras::cameras_json;
 use crate::video::SideBySide;
 use afterimage::DebugView;
-use afterimage::internal::Filter;
+use afterimage::internal::{Filter, MethodKind};
 use afterimage_eval::exposure::Exposure;
 use afterimage_eval::metric;
 use afterimage_lab::device::Backend;
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::scanpath::HeadPath;
-use afterimage_lab::source::FrameSource;
+use afterimage_lab::source::{AlbedoLayer, FrameSource};
 use afterimage_trace::sampling::Sampling;
-use clap::{Args, Parser, ValueEnum};
+use clap::{Args, Parser};
 use glam::DMat4;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -88,9 +88,10 @@ pub struct RunArgs {
     pub method: Vec<MethodName>,
     #[command(flatten)]
     pub method_settings: MethodArgs,
-    /// Give smr the albedo of every pixel: it interpolates and remembers light, and texture is the pixel's own. scene:
-    /// that of the surfaces of a rasterised scene. With --foveation planned and --jitter halton
-    #[arg(long, value_enum, value_name = "NAME")]
+    /// Give smr the albedo of every pixel of planned frames: it interpolates and remembers light, and texture is the
+    /// pixel's own. scene: that of the surfaces of a rasterised scene, with --jitter halton; else a layer of EXR frames,
+    /// by default one of a known name (docs/renderers.md); off: none
+    #[arg(long, value_parser = parse_albedo, value_name = "scene|NAME|off")]
     pub albedo: Option<AlbedoName>,
     /// Give the methods a mask of pixels that move without motion vectors, if the scene has one (analytic:scroll)
     #[arg(long)]
@@ -135,10 +136,23 @@ pub struct RunArgs {
 }
 
 /// Values of `--albedo`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum AlbedoName {
-    /// Of the surfaces of a rasterised scene
+    /// Of the surfaces of a rasterised scene.
     Scene,
+    /// A layer of EXR frames.
+    Layer(String),
+    /// None, even if EXR frames have one.
+    Off,
+}
+
+#[allow(clippy::unnecessary_wraps, reason = "the form of a parser")]
+fn parse_albedo(text: &str) -> Result<AlbedoName, String> {
+    Ok(match text {
+        "scene" => AlbedoName::Scene,
+        "off" => AlbedoName::Off,
+        layer => AlbedoName::Layer(layer.to_owned()),
+    })
 }
 
 impl RunArgs {
@@ -162,7 +176,28 @@ impl RunArgs {
             false => Filter::Mip,
         };
         let is_traced = is_scene && !self.input.is_rasterised();
-        Self { foveation: self.foveation.with_defaults(default, is_traced), ..self }
+        let mut args = Self { foveation: self.foveation.with_defaults(default, is_traced), ..self };
+        args.input.channels.albedo = args.albedo_layer();
+        args
+    }
+
+    /// The layer of EXR frames that is read as albedo.
+    fn albedo_layer(&self) -> AlbedoLayer {
+        let is_used = self.foveation.is_quads() && self.method.contains(&MethodName::Post(MethodKind::Smr));
+        match &self.albedo {
+            None if is_used => AlbedoLayer::Recognised,
+            Some(AlbedoName::Layer(name)) => AlbedoLayer::Named(name.clone()),
+            _ => AlbedoLayer::Skip,
+        }
+    }
+
+    /// Whether smr gets an albedo, of an input that has one or not.
+    fn takes_albedo(&self, has_albedo: bool) -> bool {
+        match self.albedo {
+            None => has_albedo && !self.input.is_scene(),
+            Some(AlbedoName::Off) => false,
+            Some(_) => has_albedo,
+        }
     }
 
     /// The head that moves the camera, with `--camera head`.

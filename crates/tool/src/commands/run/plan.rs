@@ -1,6 +1,6 @@
 //! Plan of a run, checked before its first frame.
 
-use super::RunArgs;
+use super::{AlbedoName, RunArgs};
 use crate::args::backend::BackendName;
 use crate::args::input;
 use crate::args::pattern::SamplingName;
@@ -8,7 +8,7 @@ use crate::args::{MethodName, Named};
 use crate::clip::pixel::ExplainedPixel;
 use crate::clip::{self, Clip, title};
 use crate::failure::Failure;
-use afterimage::internal::{Filter, Foveation, MethodKind, Settings};
+use afterimage::internal::{Filter, Foveation, Method, MethodKind, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::pipeline::RunKind;
 use afterimage_lab::quad_views::QuadViewLayout;
@@ -40,8 +40,8 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
     if args.foveation.is_quads() {
         check_quads(args)?;
     }
-    if args.albedo.is_some() {
-        check_albedo(args)?;
+    if let Some(albedo) = &args.albedo {
+        check_albedo(args, albedo, info.has_albedo)?;
     }
     let fps = args.input.fps(info);
     let geometry = args.input.geometry(info)?;
@@ -50,7 +50,7 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
         if methods.iter().any(|m| m.0 == method.name()) {
             return refuse(format!("--method: {} is named twice", method.name()));
         }
-        methods.push((method.name(), run_kind(args, method, info.still)?));
+        methods.push((method.name(), run_kind(args, method, info)?));
     }
     let track = args.gaze.resolve(&geometry, fps, input::frames(args.frames, info), head, args.gaze_latency)?;
     let frames = track.px.len();
@@ -141,8 +141,9 @@ fn words(args: &RunArgs, foveation: &Foveation) -> String {
     }
 }
 
-/// Pipeline stage of a method with these options. The oracle needs a still input.
-pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<RunKind, Failure> {
+/// Pipeline stage of a method with these options, on an input of which it needs to know whether it is still and has an
+/// albedo.
+pub fn run_kind(args: &RunArgs, method: MethodName, info: &SourceInfo) -> Result<RunKind, Failure> {
     let sampling = args.sampling()?;
     let foveation = foveation(args)?;
     let name = method.name();
@@ -164,7 +165,7 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
         MethodName::Oracle if foveation.filter == Filter::Quads => {
             return refuse("is not defined for moving samples; use another --foveation, or leave it out");
         }
-        MethodName::Oracle if is_still => return Ok(RunKind::Oracle),
+        MethodName::Oracle if info.still => return Ok(RunKind::Oracle),
         MethodName::Oracle => {
             let input = &args.input.name;
             return refuse(&format!("{input} moves, and the oracle is only defined for stills; leave it out"));
@@ -172,18 +173,33 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
     };
     let is_noisy = sampling.is_some() || args.is_traced_by_plan();
     let settings = Settings { foveation, ..args.method_settings.settings(method, args.seed, is_noisy) };
-    let settings = args.foveation.antialiased(settings);
+    let mut settings = args.foveation.antialiased(settings);
+    let is_planned = settings.foveation.filter == Filter::Quads;
+    let kind = match &mut settings.method {
+        Method::Smr(smr) if is_planned && args.takes_albedo(info.has_albedo) => {
+            // History holds means, to which albedos belong, even of frames without jitter.
+            smr.antialias = true;
+            RunKind::WithAlbedo
+        }
+        _ => RunKind::PostProcess,
+    };
     settings.validate()?;
-    let takes_albedo = args.albedo.is_some() && settings.method.kind() == MethodKind::Smr;
-    Ok(if takes_albedo { RunKind::WithAlbedo(settings) } else { RunKind::PostProcess(settings) })
+    Ok(kind(settings))
 }
 
 /// Refuses frames that have no albedo, and methods that do not take it.
-fn check_albedo(args: &RunArgs) -> Result<(), Failure> {
-    let missing = if !args.input.is_rasterised() {
+fn check_albedo(args: &RunArgs, albedo: &AlbedoName, has_albedo: bool) -> Result<(), Failure> {
+    let is_scene = *albedo == AlbedoName::Scene;
+    let missing = if *albedo == AlbedoName::Off {
+        return Ok(());
+    } else if is_scene && !args.input.is_rasterised() {
         "only rasterised scenes have it; give a scene (.gltf, .glb, builtin:NAME) without --source trace"
-    } else if !args.foveation.is_quads() || !args.foveation.is_jittered() {
+    } else if !is_scene && (args.input.is_scene() || !has_albedo) {
+        "a layer of EXR frames is meant; give such frames, or --albedo scene for a rasterised scene"
+    } else if is_scene && !(args.foveation.is_quads() && args.foveation.is_jittered()) {
         "it is for antialiased planned frames; add --foveation planned --jitter halton"
+    } else if !args.foveation.is_quads() {
+        "it is for planned frames; add --foveation planned"
     } else if !args.method.contains(&MethodName::Post(MethodKind::Smr)) {
         "smr alone takes it; add smr to --method"
     } else {

@@ -23,7 +23,7 @@ use afterimage_lab::metric::Flip;
 use afterimage_lab::picture::to_rgb8;
 use afterimage_lab::pipeline::Processor;
 use afterimage_lab::pipeline::{MethodOutput, RunKind};
-use afterimage_lab::source::FrameSource;
+use afterimage_lab::source::{FrameSource, SourceInfo};
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 
@@ -50,7 +50,8 @@ pub fn check(subject: &Planned) -> Result<(), Failure> {
         check_frames(&subject.args, frames)?;
     }
     // Assume a still input for the oracle: opening the input checks that later.
-    plan::run_kind(&subject.args, subject.method, true).map(|_| ())
+    let info = SourceInfo { still: true, ..SourceInfo::default() };
+    plan::run_kind(&subject.args, subject.method, &info).map(|_| ())
 }
 
 fn check_frames(args: &RunArgs, frames: u64) -> Result<(), Failure> {
@@ -73,7 +74,7 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
     let plan = plan::plan(args, source.info(), backend.clone(), head.as_ref())?;
     let mut methods = vec![("control", control(&batch.subjects[0]))];
     for subject in &batch.subjects {
-        methods.push((subject.method.name(), plan::run_kind(&subject.args, subject.method, source.info().still)?));
+        methods.push((subject.method.name(), plan::run_kind(&subject.args, subject.method, source.info())?));
     }
     let clip = Clip { methods, debug: vec![], pixel: None, ..plan.clip };
     check_frames(args, clip.gaze.len() as u64)?;

@@ -12,7 +12,7 @@ use afterimage_lab::picture::to_rgb8;
 use afterimage_lab::source::exr_file;
 use afterimage_lab::source::exr_file::FrameToWrite;
 use afterimage_lab::view::View;
-use afterimage_trace::surfaces::Surfaces;
+use afterimage_trace::surfaces::{self, Surfaces};
 
 /// Depth of the background in files.
 const BACKGROUND_M: f32 = 1e10;
@@ -27,9 +27,14 @@ pub struct Picture {
 /// Folders of the images of an eye.
 pub fn folders(args: &TraceArgs, eye: &str) -> Vec<String> {
     let mut folders = vec![below(eye, "color")];
-    for (aov, name) in
-        [(AovName::Depth, "depth"), (AovName::Motion, "motion"), (AovName::Variance, "variance"), (AovName::Lod, "lod")]
-    {
+    let names = [
+        (AovName::Depth, "depth"),
+        (AovName::Motion, "motion"),
+        (AovName::Albedo, "albedo"),
+        (AovName::Variance, "variance"),
+        (AovName::Lod, "lod"),
+    ];
+    for (aov, name) in names {
         if args.aov.contains(&aov) {
             folders.push(below(eye, name));
         }
@@ -73,6 +78,7 @@ pub fn write(
         depth = wants(AovName::Depth).then(|| seen.depth.map(|d| if d.is_finite() { d } else { BACKGROUND_M }));
         motion = wants(AovName::Motion).then_some(seen.motion);
     }
+    let albedo = wants(AovName::Albedo).then(|| surfaces::albedo(&setup.world, view, &setup.settings));
     let scale = exposure_ev.exp2();
     let mapped = |name: Option<TonemapName>, default: TonemapName| {
         let reinhard = name.unwrap_or(default) == TonemapName::Reinhard;
@@ -81,7 +87,8 @@ pub fn write(
     let wants_format = |format| args.format.is_none_or(|f| f == format);
     if wants_format(FormatName::Exr) {
         let color = mapped(args.tonemap, TonemapName::None);
-        let frame = FrameToWrite { depth: depth.as_ref(), motion: motion.as_ref(), ..FrameToWrite::color(&color) };
+        let (depth, motion, albedo) = (depth.as_ref(), motion.as_ref(), albedo.as_ref());
+        let frame = FrameToWrite { depth, motion, albedo, ..FrameToWrite::color(&color) };
         let path = out.path(&below(eye, "color"), index, "exr");
         exr_file::write(&path, &frame).map_err(|e| Failure::writing(&path, e))?;
     }
@@ -99,14 +106,20 @@ pub fn write(
     if let Some(motion) = &motion {
         channels("motion", &[("motion.X", &motion.map(|m| m[0])), ("motion.Y", &motion.map(|m| m[1]))])?;
     }
+    let rgb = |folder: &str, image: &Image<[f32; 3]>| {
+        let [r, g, b] = [0, 1, 2].map(|i| image.map(|v| v[i]));
+        channels(folder, &[("R", &r), ("G", &g), ("B", &b)])
+    };
+    if let Some(albedo) = &albedo {
+        rgb("albedo", albedo)?;
+    }
     if wants(AovName::Lod) {
         channels("lod", &[("lod", &picture.lod)])?;
     }
     if wants(AovName::Variance)
         && let Some(variance) = &picture.variance
     {
-        let [r, g, b] = [0, 1, 2].map(|i| variance.map(|v| v[i]));
-        channels("variance", &[("R", &r), ("G", &g), ("B", &b)])?;
+        rgb("variance", variance)?;
     }
     Ok(())
 }

@@ -34,7 +34,7 @@ use std::path::PathBuf;
     afterimage trace scene.glb --sampling layers --lens-deg 45 --hfov 90 --stereo 0.063 --out out/stereo\n\n\
     Writes OUT/color/000000.exr and .png ..., OUT/depth, OUT/motion ... (--aov), OUT/gaze.csv (foveated frames), OUT/cameras.json\n\
     and OUT/trace.json.\n\
-    With --aov depth,motion the folder OUT/color is an input for `afterimage run`.\n\n\
+    With --aov depth,motion the folder OUT/color is an input for `afterimage run`, with --aov depth,motion,albedo one with albedo.\n\n\
     With --stereo, OUT/left and OUT/right hold the frames of each eye, its cameras.json, gaze.csv and scanpath.csv (the same gaze as input\n\
     for `run --gaze`). OUT/cameras.json and OUT/gaze.csv are those of the head, which --camera and --gaze control. Both eyes look at the\n\
     same point in space: the first surface behind the head's gaze pixel, or infinity if there is none.")]
@@ -81,7 +81,7 @@ pub struct TraceArgs {
     /// own lights, else uniform white
     #[arg(long, value_name = "none|R,G,B|FILE.exr")]
     pub sky: Option<String>,
-    /// Additional images to write, separated by commas; depth and motion also as channels of the color .exr
+    /// Additional images to write, separated by commas; depth, motion and albedo also as channels of the color .exr
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     pub aov: Vec<AovName>,
     /// Device that traces
@@ -111,6 +111,8 @@ pub enum AovName {
     Depth,
     /// Motion vectors in pixels, y down, previous minus current position
     Motion,
+    /// Reflectance of the first surface that is neither a perfect mirror nor clear glass
+    Albedo,
     /// Variance of each pixel's mean; uniform sampling only
     Variance,
     /// Level of detail: log2 of the sample spacing in pixels

@@ -9,6 +9,7 @@ use afterimage_lab::scene::Environment;
 use afterimage_lab::source::{FrameSource, Light, ReadLimits, SceneChoice, SceneOptions, StillSource, ViewedScene};
 use afterimage_lab::view::View;
 use afterimage_trace::Tracer;
+use afterimage_trace::settings::TraceSettings;
 use afterimage_trace::world::World;
 use std::path::Path;
 
@@ -17,6 +18,7 @@ pub struct Setup {
     pub of: ViewedScene,
     pub world: World,
     pub tracer: Tracer,
+    pub settings: TraceSettings,
     pub backend: Backend,
     /// Time to read the scene.
     pub load_ms: f64,
@@ -55,7 +57,7 @@ impl Setup {
         let tracer = Tracer::new(&backend, &world, settings)
             .map_err(|e| Failure::Input(format!("{}: {e}; use --backend cpu", args.scene)))?;
         let moves = of.scene.duration_s() > 0.0;
-        Ok(Self { world, tracer, backend, load_ms, build_ms, moves, of })
+        Ok(Self { world, tracer, settings, backend, load_ms, build_ms, moves, of })
     }
 
     /// Updates the animated scene to `time_s`; returns the view of the head.

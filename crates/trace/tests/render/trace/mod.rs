@@ -2,6 +2,7 @@
 //! depth and motion, invalid input; hard cases H80-H84.
 
 mod agree;
+mod albedo;
 mod closed_form;
 mod coordinates;
 mod device_loss;
