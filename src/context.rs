@@ -33,7 +33,7 @@ pub struct ContextDesc {
     /// Whether the output has the color input's alpha (1 where that is not finite) instead of 1. GPU only. Default
     /// true.
     ///
-    /// On planned frames ([`Filter::Quads`](crate::internal::Filter::Quads)) history then has the alpha of its
+    /// On planned frames ([`FoveationKind::Quads`](crate::internal::FoveationKind::Quads)) history then has the alpha of its
     /// samples: 8 bytes a pixel and view, and 8 bytes a pixel of memory traffic. Set it to false if the output's alpha
     /// is not used. Alpha has the history that color has, so that both converge alike. Where alpha changes and color
     /// does not, as when something fades with color that is not premultiplied, history is not rejected, and alpha lags:
@@ -42,7 +42,7 @@ pub struct ContextDesc {
     pub keep_alpha: bool,
     /// Whether frames have the albedo of every pixel ([`FrameInputs::albedo`](crate::levels::FrameInputs::albedo)):
     /// then samples show light, and texture is the pixel's own. Only on planned frames
-    /// ([`Filter::Quads`](crate::internal::Filter::Quads)) that
+    /// ([`FoveationKind::Quads`](crate::internal::FoveationKind::Quads)) that
     /// [antialias](crate::internal::Smr::antialias) without noise, and on a GPU without
     /// [`keep_alpha`](Self::keep_alpha), whose place it takes: 8 bytes a pixel and view. Default false.
     pub has_albedo: bool,
@@ -85,7 +85,7 @@ impl ContextDesc {
         {
             return Ok(());
         }
-        let expected = "false; or Filter::Quads, Method::Smr with antialias, and no noise".into();
+        let expected = "false; or FoveationKind::Quads, Method::Smr with antialias, and no noise".into();
         Err(SettingsError { setting: "has_albedo", found: "true".into(), expected })
     }
 

@@ -15,7 +15,7 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[cfg_attr(feature = "bevy-0-20", derive(Reflect), reflect(Default))]
 #[non_exhaustive]
-pub enum Filter {
+pub enum FoveationKind {
     /// Mip levels, trilinear.
     #[default]
     Mip,
@@ -31,8 +31,8 @@ pub enum Filter {
     Quads,
 }
 
-impl Filter {
-    /// All filters, in the order of the command-line tool.
+impl FoveationKind {
+    /// All kinds, in the order of the command-line tool.
     pub const ALL: [Self; 5] = [Self::Mip, Self::Gauss, Self::Block, Self::Quads, Self::Off];
 
     /// Short name in lower case, such as `mip`.
@@ -62,11 +62,11 @@ impl Filter {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 #[cfg_attr(feature = "bevy-0-20", derive(Reflect), reflect(Default))]
 pub struct Foveation {
-    /// Filter of coarse regions. Default [`Filter::Mip`].
-    pub filter: Filter,
+    /// Kind of frames. Default [`FoveationKind::Mip`].
+    pub kind: FoveationKind,
     /// Diameter of the fovea, the full-rate region, in degrees: 0 to 180, at most `mid_deg`. Default 5.
     pub fovea_deg: f32,
-    /// Diameter of the middle region in degrees: 0 to 180. Default 15. With [`Filter::Quads`] 180 is the whole view,
+    /// Diameter of the middle region in degrees: 0 to 180. Default 15. With [`FoveationKind::Quads`] 180 is the whole view,
     /// even if the gaze is far outside of it.
     pub mid_deg: f32,
     /// Width in degrees of the linear blend outside the radius of each region: 0 to 90. Default 1.
@@ -76,11 +76,11 @@ pub struct Foveation {
     /// Block edge in the periphery, outside the middle region, in pixels: a power of two from `rate_mid` to
     /// [`MAX_RATE`](Self::MAX_RATE). Default 16.
     pub rate_far: u32,
-    /// With [`Filter::Quads`]: share of the pixels that are shaded by need in a frame, beside the fovea and the even
+    /// With [`FoveationKind::Quads`]: share of the pixels that are shaded by need in a frame, beside the fovea and the even
     /// pattern, 0 to 1. With [`noisy`](crate::internal::Settings::noisy) frames it counts paths, of which a pixel may
     /// get several. Default 0.025.
     pub budget: f32,
-    /// With [`Filter::Quads`]: whether one pixel of a chosen quad is shaded, outside the fovea, in place of all four;
+    /// With [`FoveationKind::Quads`]: whether one pixel of a chosen quad is shaded, outside the fovea, in place of all four;
     /// each in turn. For path tracers and compute shaders, which can shade single pixels: four times as many places for
     /// the same pixels. Default false.
     pub single_pixels: bool,
@@ -89,7 +89,7 @@ pub struct Foveation {
 impl Default for Foveation {
     fn default() -> Self {
         Self {
-            filter: Filter::Mip,
+            kind: FoveationKind::Mip,
             fovea_deg: 5.0,
             mid_deg: 15.0,
             blend_deg: 1.0,
@@ -105,7 +105,7 @@ impl Foveation {
     /// Largest block edge, in pixels.
     pub const MAX_RATE: u32 = 256;
 
-    /// Largest block edge with [`Filter::Quads`], in pixels.
+    /// Largest block edge with [`FoveationKind::Quads`], in pixels.
     pub const MAX_QUADS_RATE: u32 = 8;
 
     /// Foveation by quads: all within `fovea_deg` (a diameter in degrees), beyond it one quad in a block of 4x4 pixels
@@ -119,7 +119,7 @@ impl Foveation {
     /// assert!(Foveation::quads().validate().is_ok());
     /// ```
     pub fn quads() -> Self {
-        Self { filter: Filter::Quads, rate_mid: 4, rate_far: 8, ..Self::default() }
+        Self { kind: FoveationKind::Quads, rate_mid: 4, rate_far: 8, ..Self::default() }
     }
 
     /// Quads without a gaze: `share` of the pixels, 0 to 1, everywhere alike. An even pattern takes 1/8 of the pixels,
@@ -188,7 +188,7 @@ impl Foveation {
                 ),
             });
         }
-        let range = if self.filter == Filter::Quads { 2..=Self::MAX_QUADS_RATE } else { 1..=Self::MAX_RATE };
+        let range = if self.kind == FoveationKind::Quads { 2..=Self::MAX_QUADS_RATE } else { 1..=Self::MAX_RATE };
         for (setting, rate) in [("rate_mid", self.rate_mid), ("rate_far", self.rate_far)] {
             let expected = match rate.is_power_of_two() && range.contains(&rate) {
                 true if rate >= self.rate_mid => continue,
@@ -245,7 +245,7 @@ impl Foveation {
 
     pub(crate) fn mid_radius_deg(&self) -> f32 {
         // Pixels may be more than 90 degrees from a gaze outside the view; a quarter has them, too.
-        if self.filter == Filter::Quads && self.mid_deg >= 180.0 { 360.0 } else { 0.5 * self.mid_deg }
+        if self.kind == FoveationKind::Quads && self.mid_deg >= 180.0 { 360.0 } else { 0.5 * self.mid_deg }
     }
 
     fn lod_mid(&self) -> f32 {
@@ -270,13 +270,13 @@ impl Foveation {
     }
 
     /// Level of detail at eccentricity `e_deg`: log2 of the block edge in pixels, 0 at full rate. Continuous;
-    /// [`Filter::Block`] rounds it to whole levels by block.
+    /// [`FoveationKind::Block`] rounds it to whole levels by block.
     pub fn lod(&self, e_deg: f32) -> f32 {
         let (fovea, mid) = (self.fovea_radius_deg(), self.mid_radius_deg());
-        match self.filter {
-            Filter::Off => 0.0,
-            Filter::Gauss => foveate::blur_lod(e_deg, fovea, mid, self.lod_mid(), self.lod_far()),
-            Filter::Mip | Filter::Block | Filter::Quads => {
+        match self.kind {
+            FoveationKind::Off => 0.0,
+            FoveationKind::Gauss => foveate::blur_lod(e_deg, fovea, mid, self.lod_mid(), self.lod_far()),
+            FoveationKind::Mip | FoveationKind::Block | FoveationKind::Quads => {
                 foveate::region_lod(e_deg, fovea, mid, self.blend_deg, self.lod_mid(), self.lod_far())
             }
         }
@@ -285,6 +285,6 @@ impl Foveation {
     /// Levels of detail of the middle region and of the periphery.
     #[cfg(feature = "gpu")]
     pub(crate) fn lods(&self) -> [f32; 2] {
-        if self.filter == Filter::Off { [0.0; 2] } else { [self.lod_mid(), self.lod_far()] }
+        if self.kind == FoveationKind::Off { [0.0; 2] } else { [self.lod_mid(), self.lod_far()] }
     }
 }

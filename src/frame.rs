@@ -2,7 +2,7 @@
 
 use crate::context::ContextDesc;
 use crate::error::{FrameError, FrameValue};
-use crate::foveation::Filter;
+use crate::foveation::FoveationKind;
 use crate::settings::Settings;
 use crate::view::ViewFrame;
 
@@ -216,7 +216,7 @@ impl<'a, Colors, Scalars, Vectors> FrameInputs<'a, Colors, Scalars, Vectors> {
 
     /// Rejects levels of detail of planned frames.
     fn check_lod(&self, settings: &Settings) -> Result<(), FrameError> {
-        if settings.foveation.filter == Filter::Quads && self.lod.is_some() {
+        if settings.foveation.kind == FoveationKind::Quads && self.lod.is_some() {
             let (found, expected) = ("given".into(), "None: the places of the samples say how coarse the frame is");
             return Err(FrameError::Value { value: FrameValue::Lod, view: 0, found, expected });
         }
@@ -225,18 +225,18 @@ impl<'a, Colors, Scalars, Vectors> FrameInputs<'a, Colors, Scalars, Vectors> {
 
     /// Rejects a mask, and colors of half the size, of frames that are not planned.
     fn check_mask(&self, settings: &Settings) -> Result<(), FrameError> {
-        if settings.foveation.filter == Filter::Quads || !(self.mask.is_some() || self.half.is_some()) {
+        if settings.foveation.kind == FoveationKind::Quads || !(self.mask.is_some() || self.half.is_some()) {
             return Ok(());
         }
         let found = if self.mask.is_some() { "given" } else { "missing, with colors at half the size" };
-        let expected = "set Filter::Quads in Settings::foveation";
+        let expected = "set FoveationKind::Quads in Settings::foveation";
         Err(FrameError::Value { value: FrameValue::Mask, view: 0, found: found.into(), expected })
     }
 
     /// Checks the values of a frame whose quads are to be planned.
     pub(crate) fn check_plan(&self, desc: &ContextDesc) -> Result<(), FrameError> {
-        if desc.settings.foveation.filter != Filter::Quads {
-            let (found, expected) = ("asked for".into(), "Filter::Quads in Settings::foveation");
+        if desc.settings.foveation.kind != FoveationKind::Quads {
+            let (found, expected) = ("asked for".into(), "FoveationKind::Quads in Settings::foveation");
             return Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected });
         }
         if self.mask.is_some() {
@@ -248,7 +248,7 @@ impl<'a, Colors, Scalars, Vectors> FrameInputs<'a, Colors, Scalars, Vectors> {
 
     /// Rejects a frame shaded by quads that was not planned. `planned`: index of the frame that was planned.
     pub(crate) fn check_planned(&self, desc: &ContextDesc, planned: Option<u64>) -> Result<(), FrameError> {
-        let by_quads = desc.settings.foveation.filter == Filter::Quads;
+        let by_quads = desc.settings.foveation.kind == FoveationKind::Quads;
         if by_quads && self.mask.is_none() && planned != Some(self.index) {
             let found = planned.map_or("missing".into(), |index| format!("that of frame {index}"));
             let expected = "the plan of this frame: call plan before the frame is shaded, or give a mask";

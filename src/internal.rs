@@ -5,7 +5,7 @@ pub use crate::context::ContextDesc;
 
 #[cfg(feature = "cpu")]
 pub use crate::cpu::history::History;
-pub use crate::foveation::{Filter, Foveation};
+pub use crate::foveation::{Foveation, FoveationKind};
 pub use crate::frame::{FrameInputs, Reset};
 #[cfg(feature = "gpu")]
 pub use crate::gpu::binding::{Binding, INPUTS, used_by};

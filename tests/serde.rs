@@ -1,6 +1,6 @@
 //! Settings and conventions in configuration files.
 
-use afterimage::internal::{Bias, ContextDesc, Filter, Method, MethodKind, Settings, Wrs};
+use afterimage::internal::{Bias, ContextDesc, FoveationKind, Method, MethodKind, Settings, Wrs};
 use afterimage::{DepthConvention, MotionConvention};
 
 fn round_trip<T: serde::Serialize + serde::de::DeserializeOwned + PartialEq + std::fmt::Debug>(value: T) -> String {
@@ -43,11 +43,10 @@ fn conventions_survive_a_file() {
 
 #[test]
 fn what_a_file_omits_is_the_default_and_what_is_unknown_is_an_error() {
-    let text =
-        r#"{ "method": { "wrs": { "weight_exponent": 3 } }, "foveation": { "filter": "block", "rate_far": 8 } }"#;
+    let text = r#"{ "method": { "wrs": { "weight_exponent": 3 } }, "foveation": { "kind": "block", "rate_far": 8 } }"#;
     let settings: Settings = serde_json::from_str(text).unwrap();
     let wrs = Wrs { weight_exponent: 3, ..Wrs::default() };
-    assert_eq!((settings.method, settings.foveation.filter), (Method::Wrs(wrs), Filter::Block));
+    assert_eq!((settings.method, settings.foveation.kind), (Method::Wrs(wrs), FoveationKind::Block));
     let rest = Settings { method: Method::default(), foveation: Default::default(), ..settings };
     assert_eq!(rest, ContextDesc::new([1, 1]).settings);
     let misspelled = serde_json::from_str::<Settings>(r#"{ "metod": "taa" }"#).unwrap_err();

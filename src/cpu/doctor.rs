@@ -9,13 +9,13 @@ use crate::image::Image;
 
 /// Checks whether a renderer's frames match a [`ContextDesc`]: motion vectors, depth, colors, gaze and foveation of one
 /// view. Give it some consecutive frames in which the camera moves and the eye looks around. With
-/// [`Filter::Quads`](crate::internal::Filter::Quads), shade them at full rate, without the plan; motion, jitter, depth
+/// [`FoveationKind::Quads`](crate::internal::FoveationKind::Quads), shade them at full rate, without the plan; motion, jitter, depth
 /// and color are checked.
 ///
 /// ```
 /// use afterimage::cpu::{Doctor, Frame};
 /// use afterimage::doctor::Fault;
-/// use afterimage::internal::{ContextDesc, Filter, ViewFrame};
+/// use afterimage::internal::{ContextDesc, FoveationKind, ViewFrame};
 /// use afterimage::{Gaze, Image, ViewGeometry};
 ///
 /// // A pattern moves to the right by 2 pixels a frame. It was to the left before, but the vectors point to the right.
@@ -25,7 +25,7 @@ use crate::image::Image;
 /// let views = [ViewFrame::new(ViewGeometry::flat(size, 70.0)?, Gaze::At { px: [40.0, 30.0] })];
 ///
 /// let mut desc = ContextDesc::new(size);
-/// desc.settings.foveation.filter = Filter::Off;
+/// desc.settings.foveation.kind = FoveationKind::Off;
 /// let mut doctor = Doctor::new(&desc, 0)?;
 /// for index in 0..4 {
 ///     let color = Image::from_fn(size, |[x, y]| [pattern(x as f32 - 2.0 * index as f32, y as f32); 3]);

@@ -228,7 +228,7 @@ impl CpuAfterimage {
         self.run(frame, output, None, Some(traces), None)
     }
 
-    /// Pixels to shade of a [planned frame](crate::internal::Filter::Quads), one mask a view: quads of 2x2 pixels, or
+    /// Pixels to shade of a [planned frame](crate::internal::FoveationKind::Quads), one mask a view: quads of 2x2 pixels, or
     /// [single pixels](crate::internal::Foveation::single_pixels). Give the frame to [`process`](Self::process) with a
     /// color of the context's size, in which these pixels are shaded. Without history the plan is a quarter of the
     /// pixels ([`is_quarter`](Self::is_quarter)), unless the foveation shades more.
@@ -259,7 +259,7 @@ impl CpuAfterimage {
     /// ```
     ///
     /// # Errors
-    /// [`FrameError`] if the foveation is not [`Quads`](crate::internal::Filter::Quads), and as for `process`.
+    /// [`FrameError`] if the foveation is not [`Quads`](crate::internal::FoveationKind::Quads), and as for `process`.
     pub fn plan(&mut self, frame: &Frame<'_>) -> Result<&[Image<bool>], FrameError> {
         frame.check_plan(&self.desc)?;
         check_geometry(&self.desc, frame)?;

@@ -5,7 +5,7 @@ use super::finding::{Check, Fault, Finding};
 use super::observation::Observation;
 use super::sharpness::{bends, is_inside};
 use crate::context::ContextDesc;
-use crate::foveation::Filter;
+use crate::foveation::FoveationKind;
 use crate::kernel::doctor::{CODES, TILE_PX};
 
 /// Least number of tiles that vote.
@@ -25,7 +25,7 @@ pub(super) fn check(desc: &ContextDesc, observations: &[Observation]) -> Finding
             let middle = tile.origin_px.map(|o| (o + TILE_PX / 2) as f32);
             let now = &observation.now;
             let lod = foveation.lod(foveation.region_angle_deg(&now.view.geometry, middle, now.gaze_px));
-            if !is_inside(tile, desc.size_px) || foveation.filter != Filter::Mip || lod < 1.5 {
+            if !is_inside(tile, desc.size_px) || foveation.kind != FoveationKind::Mip || lod < 1.5 {
                 continue;
             }
             coarse += 1;

@@ -16,7 +16,7 @@ pub enum Check {
     Color,
     /// Position of the gaze.
     Gaze,
-    /// Filter, regions and rates of the foveation.
+    /// FoveationKind, regions and rates of the foveation.
     Foveation,
 }
 

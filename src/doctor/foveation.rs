@@ -4,7 +4,7 @@ use super::finding::{Check, Fault, Finding};
 use super::observation::Observation;
 use super::sharpness::{Measured, agrees, is_inside, measure, range};
 use crate::context::ContextDesc;
-use crate::foveation::{Filter, Foveation};
+use crate::foveation::{Foveation, FoveationKind};
 use crate::geometry::ViewGeometry;
 use crate::kernel::doctor::TILE_PX;
 
@@ -102,7 +102,7 @@ fn largest<T>(counts: &[(T, f64)]) -> &(T, f64) {
 /// Findings on the gaze and on the foveation.
 pub(super) fn check(desc: &ContextDesc, observations: &[Observation]) -> [Finding; 2] {
     let neither = |why| [Check::Gaze, Check::Foveation].map(|check| Finding::cannot_tell(check, why));
-    if desc.settings.foveation.filter == Filter::Quads {
+    if desc.settings.foveation.kind == FoveationKind::Quads {
         return neither("every pixel is shaded at full rate here, in place of chosen quads");
     }
     if observations.iter().any(|o| o.now.has_lod) {
@@ -199,7 +199,7 @@ impl Measurement {
                 self.points.map(|px| foveation.region_angle_deg(&self.geometry, px, gaze_px))
             }
         };
-        agrees(self.measured, foveation.filter, range(foveation, &ecc_deg))
+        agrees(self.measured, foveation.kind, range(foveation, &ecc_deg))
     }
 }
 
@@ -213,10 +213,10 @@ fn candidates(stated: &Foveation) -> Vec<Candidate> {
             all.push(Candidate { foveation, fault, is_coarse });
         }
     };
-    add(Fault::NotFoveated, Foveation { filter: Filter::Off, ..*stated });
-    for filter in [Filter::Mip, Filter::Block] {
-        if filter != stated.filter {
-            add(Fault::FoveationFilter, Foveation { filter, ..*stated });
+    add(Fault::NotFoveated, Foveation { kind: FoveationKind::Off, ..*stated });
+    for filter in [FoveationKind::Mip, FoveationKind::Block] {
+        if filter != stated.kind {
+            add(Fault::FoveationFilter, Foveation { kind: filter, ..*stated });
         }
     }
     for factor in [0.5, 2.0, 0.67, 1.5, 0.33, 3.0] {
@@ -238,7 +238,7 @@ fn candidates(stated: &Foveation) -> Vec<Candidate> {
 fn line(stated: &Foveation, right: &Foveation) -> String {
     let mut fields = vec![];
     let mut field = |differs: bool, text: String| fields.extend(differs.then_some(text));
-    field(stated.filter != right.filter, format!("filter: Filter::{:?}", right.filter));
+    field(stated.kind != right.kind, format!("filter: Filter::{:?}", right.kind));
     field(stated.fovea_deg != right.fovea_deg, format!("fovea_deg: {:?}", right.fovea_deg));
     field(stated.mid_deg != right.mid_deg, format!("mid_deg: {:?}", right.mid_deg));
     field(stated.rate_mid != right.rate_mid, format!("rate_mid: {}", right.rate_mid));

@@ -2,7 +2,7 @@
 
 use crate::context::ContextDesc;
 use crate::convention::MotionUnit;
-use crate::foveation::Filter;
+use crate::foveation::FoveationKind;
 use crate::kernel::depth::DisparityMap;
 use crate::kernel::doctor::{DEPTH, DEPTHS, HYPOTHESES, MOTION, TILE_PX, WORDS};
 use crate::uniforms::{CameraUniforms, ViewState, ViewUniforms};
@@ -121,8 +121,8 @@ impl Description {
     pub fn new(desc: &ContextDesc, view: ViewFrame, gaze_px: [f32; 2], past_gaze_px: Option<[f32; 2]>) -> Self {
         let has_gaze = view.gaze.known_px(&view.geometry).is_some();
         let foveation = desc.settings.foveation;
-        let lod = |center, gaze| match foveation.filter {
-            Filter::Quads => 0.0,
+        let lod = |center, gaze| match foveation.kind {
+            FoveationKind::Quads => 0.0,
             _ => foveation.lod(foveation.region_angle_deg(&view.geometry, center, gaze)),
         };
         let tiles = origins(desc.size_px).map(|origin_px| {

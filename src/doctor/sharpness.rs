@@ -1,7 +1,7 @@
 //! Measured sharpness: the level of detail of a tile's pixels, independent of the description.
 
 use super::observation::{Evidence, Tile};
-use crate::foveation::{Filter, Foveation};
+use crate::foveation::{Foveation, FoveationKind};
 use crate::kernel::doctor::{BENDS, BOUNDARIES, BROKEN, DECODED_BENDS, KINKS, SIGNAL, STEPS, TILE_PX, WIDE_BENDS};
 
 /// Number of neighbours in a tile across boundaries of each class.
@@ -70,13 +70,13 @@ pub(super) fn measure(evidence: &Evidence<'_>) -> Option<Measured> {
 }
 
 /// Whether a foveation with levels of detail from `least` to `most` at the tile produces this measurement.
-pub(super) fn agrees(measured: Measured, filter: Filter, [least, most]: [f64; 2]) -> bool {
+pub(super) fn agrees(measured: Measured, filter: FoveationKind, [least, most]: [f64; 2]) -> bool {
     match (measured, filter) {
-        (Measured::Fine, Filter::Off) => true,
-        (Measured::Fine, Filter::Block) => least < 1.2,
+        (Measured::Fine, FoveationKind::Off) => true,
+        (Measured::Fine, FoveationKind::Block) => least < 1.2,
         (Measured::Fine, _) => least < 1.9,
-        (Measured::Interpolated { lod }, Filter::Mip) => lod >= least.min(4.5) - 0.6 && lod <= most + 0.6,
-        (Measured::Blocks { level }, Filter::Block) => {
+        (Measured::Interpolated { lod }, FoveationKind::Mip) => lod >= least.min(4.5) - 0.6 && lod <= most + 0.6,
+        (Measured::Blocks { level }, FoveationKind::Block) => {
             let level = f64::from(level);
             level >= (least + 1e-3).floor().min(4.0) && level <= (most + 0.3).floor()
         }

@@ -45,7 +45,7 @@ pub use textures::{Region, Textures};
 
 use crate::context::ContextDesc;
 use crate::error::{CreateError, FrameError, FrameValue, SettingsError};
-use crate::foveation::Filter;
+use crate::foveation::FoveationKind;
 use crate::frame::Reset;
 use crate::gaze::Gaze;
 use crate::geometry::ViewGeometry;
@@ -277,7 +277,7 @@ impl Afterimage {
 
     /// Follows a change of settings or size.
     fn update_quads(&mut self, device: &Device) {
-        let by_quads = self.desc.settings.foveation.filter == Filter::Quads;
+        let by_quads = self.desc.settings.foveation.kind == FoveationKind::Quads;
         match &mut self.quads {
             Some(quads) if by_quads => quads.update(device, &self.desc),
             quads => *quads = by_quads.then(|| QuadPasses::new(device, &self.desc, self.stages.sources())),
@@ -326,7 +326,7 @@ impl Afterimage {
 
     /// Size in bytes of the textures that a context of this description would hold between frames.
     pub fn memory_bytes_of(desc: &ContextDesc) -> u64 {
-        let by_quads = desc.settings.foveation.filter == Filter::Quads;
+        let by_quads = desc.settings.foveation.kind == FoveationKind::Quads;
         let quads = if by_quads { quads::memory_bytes(desc) } else { 0 };
         history::memory_bytes(desc) + stages::memory_bytes_of(desc) + quads
     }
@@ -360,7 +360,7 @@ impl Afterimage {
     }
 
     /// Records, into `encoder`, the choice of the quads of 2x2 pixels to shade of a frame [shaded by
-    /// quads](crate::internal::Filter::Quads). The renderer reads it from [`quad_mask`](Self::quad_mask) or
+    /// quads](crate::internal::FoveationKind::Quads). The renderer reads it from [`quad_mask`](Self::quad_mask) or
     /// [`quad_list`](Self::quad_list), shades these quads at full rate, and gives a color of the context's size with
     /// them to [`record`](Self::record) of the same frame.
     ///
@@ -389,7 +389,7 @@ impl Afterimage {
     /// ```
     ///
     /// # Errors
-    /// [`FrameError`] if the foveation is not [`Quads`](crate::internal::Filter::Quads), and as for `record`; then
+    /// [`FrameError`] if the foveation is not [`Quads`](crate::internal::FoveationKind::Quads), and as for `record`; then
     /// nothing was recorded.
     pub fn plan(&mut self, device: &Device, encoder: &mut CommandEncoder, frame: &Frame<'_>) -> Result<(), FrameError> {
         frame.check_plan(&self.desc)?;
@@ -470,7 +470,7 @@ impl Afterimage {
     }
 
     /// Compiles the pipeline of [`prime`](Self::prime) for the format, samples and near plane of a target, in place of
-    /// the first frame. No effect with filters other than [`Filter::Quads`].
+    /// the first frame. No effect with filters other than [`FoveationKind::Quads`].
     ///
     /// # Errors
     /// [`FrameError`] if the target does not fit, as for `prime`.
@@ -481,7 +481,7 @@ impl Afterimage {
         Ok(())
     }
 
-    /// The pixels that the last [`plan`](Self::plan) of a frame [shaded by quads](crate::internal::Filter::Quads)
+    /// The pixels that the last [`plan`](Self::plan) of a frame [shaded by quads](crate::internal::FoveationKind::Quads)
     /// chose: an `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bits 0 to 3 say which of its pixels
     /// are shaded, row by row, and bits 8 to 12 how many paths each of them gets, as in
     /// [`CpuAfterimage::paths`](crate::cpu::CpuAfterimage::paths), with an array layer for each view; usages
@@ -494,7 +494,7 @@ impl Afterimage {
     /// `INDIRECT` and `COPY_SRC`. 32-bit words: at byte 0 the arguments of `draw_indirect` with 6 vertices and an
     /// instance for each quad, at byte 16 those of `dispatch_workgroups_indirect` with 64 invocations a workgroup and
     /// one for each quad, at byte 28 the number of quads, from byte 32 on the quads, x + 65536 y in quads, in no
-    /// particular order. `None` with another filter than [`Quads`](crate::internal::Filter::Quads). Changes of size and
+    /// particular order. `None` with another filter than [`Quads`](crate::internal::FoveationKind::Quads). Changes of size and
     /// settings replace it.
     pub fn quad_list(&self, view: usize) -> Option<&Buffer> {
         self.quads.as_ref().and_then(|quads| quads.quads.views.get(view)).map(|view| &view.list)

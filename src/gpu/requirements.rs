@@ -5,7 +5,7 @@ use super::recorder::STORED;
 use super::{history, quads};
 use crate::context::{ContextDesc, check_size};
 use crate::error::{CreateError, FrameError, SettingsError};
-use crate::foveation::Filter;
+use crate::foveation::FoveationKind;
 use crate::settings::Settings;
 use crate::uniforms::MAX_VIEWS;
 use wgpu::{Device, Limits, TextureFormat};
@@ -103,7 +103,7 @@ fn compared(limits: &Limits) -> [(&'static str, u64); 10] {
 
 pub(super) fn required_limits(desc: &ContextDesc) -> Limits {
     let least = Limits::downlevel_defaults();
-    let by_quads = desc.settings.foveation.filter == Filter::Quads;
+    let by_quads = desc.settings.foveation.kind == FoveationKind::Quads;
     let list = if by_quads { quads::list_bytes(desc) } else { 0 };
     Limits {
         max_texture_dimension_2d: largest_side(desc),

@@ -87,13 +87,13 @@ impl Foveation {
 
     /// The foveation as the passes take it.
     pub(super) fn passes(self) -> foveation::Foveation {
-        let filter = match self.filter {
-            Filter::Mip => foveation::Filter::Mip,
-            Filter::Gauss => foveation::Filter::Gauss,
-            Filter::Block => foveation::Filter::Block,
-            Filter::Off => foveation::Filter::Off,
+        let kind = match self.filter {
+            Filter::Mip => foveation::FoveationKind::Mip,
+            Filter::Gauss => foveation::FoveationKind::Gauss,
+            Filter::Block => foveation::FoveationKind::Block,
+            Filter::Off => foveation::FoveationKind::Off,
         };
         let Self { fovea_deg, mid_deg, blend_deg, rate_mid, rate_far, .. } = self;
-        foveation::Foveation { filter, fovea_deg, mid_deg, blend_deg, rate_mid, rate_far, ..Default::default() }
+        foveation::Foveation { kind, fovea_deg, mid_deg, blend_deg, rate_mid, rate_far, ..Default::default() }
     }
 }

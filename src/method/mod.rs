@@ -17,7 +17,7 @@ pub(crate) use smr::smr_params;
 pub(crate) use wrs::has_references;
 pub(crate) use wrs::{inv_density_at_fovea, wrs_params};
 
-use crate::foveation::Filter;
+use crate::foveation::FoveationKind;
 use crate::settings::{Method, MethodKind, Settings, Smr, Wrs};
 
 impl MethodKind {
@@ -119,8 +119,8 @@ pub(crate) enum Stage {
 
 /// Stages of an algorithm that reads whole frames and keeps no mip chain.
 fn whole_frames(settings: &Settings) -> Vec<Stage> {
-    match settings.foveation.filter {
-        Filter::Quads => vec![Stage::Fill, Stage::Method],
+    match settings.foveation.kind {
+        FoveationKind::Quads => vec![Stage::Fill, Stage::Method],
         _ => vec![Stage::Method],
     }
 }
@@ -186,7 +186,7 @@ impl Settings {
     /// The entry of these settings. On planned frames, smr stands for their reconstruction.
     fn entry(&self) -> &'static Entry {
         match self.method {
-            Method::Smr(_) if self.foveation.filter == Filter::Quads => &planned::ENTRY,
+            Method::Smr(_) if self.foveation.kind == FoveationKind::Quads => &planned::ENTRY,
             method => method.kind().entry(),
         }
     }
@@ -217,7 +217,7 @@ impl Settings {
     /// Whether planned frames of these settings differ from those of `other` at most in rates, regions and budget.
     #[cfg(feature = "gpu")]
     pub(crate) fn differs_in_uniforms(&self, other: &Self) -> bool {
-        let is_planned = |settings: &Self| settings.foveation.filter == Filter::Quads;
+        let is_planned = |settings: &Self| settings.foveation.kind == FoveationKind::Quads;
         is_planned(self) && is_planned(other) && Self { foveation: other.foveation, ..*self } == *other
     }
 

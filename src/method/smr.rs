@@ -1,7 +1,7 @@
 //! Scale-matched reservoirs.
 
 use super::{Algorithm, Entry, HistoryLayout, PassShader, Stage};
-use crate::foveation::Filter;
+use crate::foveation::FoveationKind;
 use crate::kernel::mip_noise::NOISY_LEVELS;
 use crate::kernel::smr::SmrParams;
 use crate::settings::Settings;
@@ -26,9 +26,9 @@ pub(super) static ENTRY: Entry = Entry {
 fn history(settings: &Settings) -> HistoryLayout {
     // Two levels above the candidate's: one to measure contrast, one to blend with. Blocks are compared one level
     // coarser.
-    let shift = match settings.foveation.filter {
+    let shift = match settings.foveation.kind {
         _ if settings.noisy => 2 + NOISY_LEVELS as u32,
-        Filter::Block => 3,
+        FoveationKind::Block => 3,
         _ => 2,
     };
     HistoryLayout::Surfaces { levels: settings.foveation.max_level() + shift, noisy: settings.noisy }
@@ -44,23 +44,23 @@ fn history_traffic_bytes(settings: &Settings) -> u32 {
     surfaces + noise
 }
 
-/// Filter that the pass assumes. Noisy blocks are treated as mip levels, because noise exceeds their aliasing.
-fn filter(settings: &Settings) -> Filter {
-    match settings.foveation.filter {
-        Filter::Block if settings.noisy => Filter::Mip,
+/// Kind of frames that the pass assumes. Noisy blocks are treated as mip levels, because noise exceeds their aliasing.
+fn filter(settings: &Settings) -> FoveationKind {
+    match settings.foveation.kind {
+        FoveationKind::Block if settings.noisy => FoveationKind::Mip,
         filter => filter,
     }
 }
 
 pub(crate) fn smr_params(settings: &Settings) -> SmrParams {
     let smr = settings.method.smr();
-    let blocks = filter(settings) == Filter::Block;
+    let blocks = filter(settings) == FoveationKind::Block;
     SmrParams {
         accumulate: smr.accumulate,
         // Rejecting coarse history costs little detail, so it must fit more strictly. The test is less strict for
         // blocks and noise, which need averaging, and for Gaussian blurs, which never agree with levels of history
         // exactly.
-        accumulate_tolerance: if settings.noisy || filter(settings) == Filter::Gauss {
+        accumulate_tolerance: if settings.noisy || filter(settings) == FoveationKind::Gauss {
             0.5
         } else if blocks {
             0.67

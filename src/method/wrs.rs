@@ -1,7 +1,7 @@
 //! Weighted reservoirs.
 
 use super::{Algorithm, Entry, HistoryLayout, PassShader, whole_frames};
-use crate::foveation::Filter;
+use crate::foveation::FoveationKind;
 use crate::kernel::acuity;
 use crate::kernel::reservoir;
 use crate::kernel::wrs::{BiasCode, GateCode, SamplerCode, WrsParams};
@@ -19,8 +19,8 @@ pub(super) static ENTRY: Entry = Entry {
         let noise = if settings.noisy { 4 } else { 0 };
         2 * reservoir + noise
     },
-    shader: |settings| match settings.foveation.filter {
-        Filter::Quads => PassShader { name: "wrs_quad_pass", block_px: 1 },
+    shader: |settings| match settings.foveation.kind {
+        FoveationKind::Quads => PassShader { name: "wrs_quad_pass", block_px: 1 },
         _ => PassShader { name: "wrs_pass", block_px: 1 },
     },
     overrides: |settings| {
@@ -32,7 +32,7 @@ pub(super) static ENTRY: Entry = Entry {
             ("WEIGHT_EXPONENT", settings.method.wrs().weight_exponent),
             ("RATE_EXPONENT", settings.method.wrs().rate_exponent),
             ("HAS_REFERENCES", u32::from(has_references(settings))),
-            ("FILTER", settings.foveation.filter as u32),
+            ("FILTER", settings.foveation.kind as u32),
         ]
     },
 };

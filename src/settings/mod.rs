@@ -77,7 +77,7 @@ pub struct Smr {
     pub tolerance: f32,
     /// Whether history is scaled to follow changes of light, instead of being rejected. Default true.
     pub relight: bool,
-    /// Whether planned frames ([`Filter::Quads`](crate::internal::Filter::Quads)) are antialiased: their projection is
+    /// Whether planned frames ([`FoveationKind::Quads`](crate::internal::FoveationKind::Quads)) are antialiased: their projection is
     /// jittered ([`ViewFrame::jitter_px`](crate::internal::ViewFrame::jitter_px), best [`Foveation::jitter_px`]), and
     /// history stores means of samples instead of single ones. Set it in place of other temporal antialiasing, and only
     /// for jittered frames. It has no effect on noisy frames, which are averaged in any case, or on other frames.
@@ -197,7 +197,7 @@ impl Settings {
         Self { method: Method::Smr(Smr::traced()), noisy: true, ..Self::default() }
     }
 
-    /// Antialiased frames shaded by quads ([`Filter::Quads`](crate::internal::Filter::Quads)), for screens about
+    /// Antialiased frames shaded by quads ([`FoveationKind::Quads`](crate::internal::FoveationKind::Quads)), for screens about
     /// 40 degrees wide: a coarser even pattern and twice the budget of [`Foveation::quads`], 11 % of the pixels. Frames
     /// must be jittered ([`Foveation::jitter_px`]). `docs/quads.md` has the scores.
     pub fn screen() -> Self {

@@ -1,7 +1,7 @@
 //! Simulators for images in memory.
 
 use super::{Pyramid, block, gaussian};
-use crate::foveation::{Filter, Foveation};
+use crate::foveation::{Foveation, FoveationKind};
 use crate::geometry::ViewGeometry;
 use crate::image::Image;
 
@@ -9,7 +9,7 @@ impl Foveation {
     /// Level of detail of every pixel, for [`render`](Self::render) and for `cpu::Frame::lod`. Needs the feature `cpu`.
     /// Example: `internal::Pyramid`.
     pub fn lod_map(&self, geometry: &ViewGeometry, gaze_px: [f32; 2]) -> Image<f32> {
-        if self.filter == Filter::Block {
+        if self.kind == FoveationKind::Block {
             return block::lod_map(self, geometry, gaze_px);
         }
         Image::from_fn_parallel(geometry.size_px(), |px| {
@@ -23,14 +23,14 @@ impl Foveation {
     /// # Panics
     /// If the pyramid has too few levels.
     pub fn render(&self, pyramid: &Pyramid, lods: &Image<f32>) -> Image<[f32; 3]> {
-        match self.filter {
+        match self.kind {
             // A planned frame is the full-rate frame: the post-process reads only its samples.
-            Filter::Off | Filter::Quads => pyramid.level(0).clone(),
-            Filter::Mip => Image::from_fn_parallel(lods.size(), |[x, y]| {
+            FoveationKind::Off | FoveationKind::Quads => pyramid.level(0).clone(),
+            FoveationKind::Mip => Image::from_fn_parallel(lods.size(), |[x, y]| {
                 pyramid.trilinear([x as f32, y as f32], lods.at(x as usize, y as usize))
             }),
-            Filter::Block => block::render(pyramid, lods),
-            Filter::Gauss => gaussian::render(pyramid.level(0), lods),
+            FoveationKind::Block => block::render(pyramid, lods),
+            FoveationKind::Gauss => gaussian::render(pyramid.level(0), lods),
         }
     }
 }

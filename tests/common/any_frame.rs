@@ -1,7 +1,7 @@
 //! Small frames of arbitrary bit patterns, for properties of whole passes on either executor.
 
 use crate::images::View;
-use afterimage::internal::{Bias, Filter, Foveation, Method, MethodKind, Sampler, Settings, ViewFrame, Wrs};
+use afterimage::internal::{Bias, Foveation, FoveationKind, Method, MethodKind, Sampler, Settings, ViewFrame, Wrs};
 use afterimage::{Gaze, Image, ViewGeometry};
 use afterimage_testing::Draws;
 
@@ -11,7 +11,7 @@ pub const SIZE: [u32; 2] = [8, 6];
 pub fn all_settings() -> Vec<Settings> {
     let of = |method: MethodKind| Settings { method: method.into(), ..Settings::default() };
     let keyed = Wrs { sampler: Sampler::AEs, bias: Bias::Exponential { lambda: 0.1 }, gate: None, ..Wrs::default() };
-    let blocks = Foveation { filter: Filter::Block, ..Foveation::default() };
+    let blocks = Foveation { kind: FoveationKind::Block, ..Foveation::default() };
     vec![
         of(MethodKind::None),
         of(MethodKind::Wrs),

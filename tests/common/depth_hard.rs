@@ -4,7 +4,7 @@
 use crate::images::{Images, View, held_words, noise, pixel, pixels, planned, traced};
 use crate::settings::ungated_of;
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::internal::{ContextDesc, DepthTest, Filter, Foveation, MethodKind, Reset, Settings};
+use afterimage::internal::{ContextDesc, DepthTest, Foveation, FoveationKind, MethodKind, Reset, Settings};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::stored_reservoir;
 use afterimage::kernel::surface::{Surface, unpack_surface};
@@ -130,7 +130,7 @@ pub fn ungated_and_planned() -> [ContextDesc; 4] {
 }
 
 pub fn is_planned(desc: &ContextDesc) -> bool {
-    desc.settings.foveation.filter == Filter::Quads
+    desc.settings.foveation.kind == FoveationKind::Quads
 }
 
 pub fn still(color: Color) -> View {

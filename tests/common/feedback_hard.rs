@@ -3,7 +3,7 @@
 use crate::depth_hard::{Color, Make, Steps};
 use crate::images::{View, off, peak, pixel, times};
 use afterimage::Image;
-use afterimage::internal::{ContextDesc, Filter, Foveation, Method, Settings, Smr};
+use afterimage::internal::{ContextDesc, Foveation, FoveationKind, Method, Settings, Smr};
 use afterimage::kernel::surface::Surface;
 use afterimage_testing::Draws;
 
@@ -25,8 +25,11 @@ const RATES: [[u32; 2]; 3] = [[2, 4], [4, 8], [8, 16]];
 /// Storage rounds colors by up to 2^-10.
 const ROUNDING: f32 = 1.0 / 1024.0;
 
-fn settings(filter: Filter, [rate_mid, rate_far]: [u32; 2]) -> Settings {
-    Settings { foveation: Foveation { filter, rate_mid, rate_far, ..Foveation::default() }, ..Settings::default() }
+fn settings(filter: FoveationKind, [rate_mid, rate_far]: [u32; 2]) -> Settings {
+    Settings {
+        foveation: Foveation { kind: filter, rate_mid, rate_far, ..Foveation::default() },
+        ..Settings::default()
+    }
 }
 
 fn executor(make: Make<'_>, settings: Settings) -> Option<Box<dyn Steps>> {
@@ -54,7 +57,7 @@ fn picture(draws: &mut Draws) -> Color {
 pub fn steady_gaze(make: Make<'_>) -> Option<String> {
     let mut draws = Draws::new("steady gaze");
     let mut worst = 0.0_f32;
-    for (filter, rates) in [Filter::Mip, Filter::Gauss, Filter::Block].into_iter().zip(RATES) {
+    for (filter, rates) in [FoveationKind::Mip, FoveationKind::Gauss, FoveationKind::Block].into_iter().zip(RATES) {
         let settings = settings(filter, rates);
         for _ in 0..2 {
             let view = View::delivered(&settings.foveation, &picture(&mut draws), anywhere(&mut draws));
@@ -69,7 +72,7 @@ pub fn steady_gaze(make: Make<'_>) -> Option<String> {
     }
     assert!(worst <= ROUNDING, "{worst}");
     // The planted error: a first frame that claims to be finer than it is. Its blur counts as a change of light.
-    let settings = settings(Filter::Mip, [4, 8]);
+    let settings = settings(FoveationKind::Mip, [4, 8]);
     let full = Image::from_fn(SIZE, |[x, y]| [if x % 24 < 4 && y % 24 < 4 { 8.0 } else { 0.25 }; 3]);
     let coarse =
         View { lod: Some(Image::filled(SIZE, 3.0)), ..View::delivered(&settings.foveation, &full, [-4000.0, 0.0]) };
@@ -88,7 +91,7 @@ pub fn steady_gaze(make: Make<'_>) -> Option<String> {
 pub fn rest(make: Make<'_>) -> Option<String> {
     let mut draws = Draws::new("gains rest");
     let (mut most, mut moved) = (0.0_f32, [0; 2]);
-    for (filter, rates) in [Filter::Mip, Filter::Gauss, Filter::Mip].into_iter().zip(RATES) {
+    for (filter, rates) in [FoveationKind::Mip, FoveationKind::Gauss, FoveationKind::Mip].into_iter().zip(RATES) {
         let settings = settings(filter, rates);
         let full = picture(&mut draws);
         let mut post = executor(make, settings)?;
@@ -148,7 +151,7 @@ fn unlit(settings: Settings) -> Settings {
 pub fn flash(make: Make<'_>) -> Option<String> {
     let mut worst = 0;
     let mut draws = Draws::new("flash");
-    let lights = [(Filter::Mip, 1.0), (Filter::Gauss, 4.0), (Filter::Mip, 32.0)];
+    let lights = [(FoveationKind::Mip, 1.0), (FoveationKind::Gauss, 4.0), (FoveationKind::Mip, 32.0)];
     for ((filter, light), rates) in lights.into_iter().zip(RATES) {
         let relit = settings(filter, rates);
         let [wall, lit] = wall_and_lamp(&mut draws, light);

@@ -1,7 +1,7 @@
 //! Images of frames, view by view, in the form of the CPU executor's inputs.
 
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::internal::{Filter, Foveation, Pyramid, ViewFrame};
+use afterimage::internal::{Foveation, FoveationKind, Pyramid, ViewFrame};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::{FrameStats, Gaze, Image, ViewGeometry};
 use afterimage_testing::Draws;
@@ -131,11 +131,11 @@ fn given<T>(images: &[T]) -> Option<&[T]> {
 
 /// Plans a frame that is shaded by quads: the masks, or those that the frame has itself.
 pub fn planned(post: &mut CpuAfterimage, frame: &Frame<'_>) -> Vec<Image<bool>> {
-    match post.desc().settings.foveation.filter {
-        Filter::Quads if frame.mask.is_some() => {
+    match post.desc().settings.foveation.kind {
+        FoveationKind::Quads if frame.mask.is_some() => {
             frame.mask.into_iter().flatten().map(|mask| mask.map(|chosen| chosen > 0.5)).collect()
         }
-        Filter::Quads => post.plan(frame).unwrap().to_vec(),
+        FoveationKind::Quads => post.plan(frame).unwrap().to_vec(),
         _ => vec![],
     }
 }

@@ -2,7 +2,9 @@
 
 use crate::depth_hard::{Color, Made, Make, Steps};
 use crate::images::{View, pixel, times};
-use afterimage::internal::{ContextDesc, Filter, Foveation, Method, MethodKind, Reset, Sampler, Settings, Smr, Wrs};
+use afterimage::internal::{
+    ContextDesc, Foveation, FoveationKind, Method, MethodKind, Reset, Sampler, Settings, Smr, Wrs,
+};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::{Exposure, Image};
 use afterimage_testing::Draws;
@@ -22,8 +24,8 @@ pub(crate) use scale_laws;
 /// Frames of a clip.
 const FRAMES: u64 = 8;
 
-fn settings(filter: Filter) -> Settings {
-    let foveation = Foveation { filter, rate_mid: 4, rate_far: 8, ..Foveation::default() };
+fn settings(filter: FoveationKind) -> Settings {
+    let foveation = Foveation { kind: filter, rate_mid: 4, rate_far: 8, ..Foveation::default() };
     Settings { foveation, ..Settings::default() }
 }
 
@@ -35,8 +37,8 @@ fn delivered(settings: &Settings, full: &Color, gaze_px: [f32; 2], index: u64) -
     }
     view.noise = settings.noisy.then(|| full.map(|c| [0.05 * c[1], 2.0]));
     let foveation = &settings.foveation;
-    match foveation.filter {
-        Filter::Quads => view,
+    match foveation.kind {
+        FoveationKind::Quads => view,
         _ => View { color: View::delivered(foveation, full, gaze_px).color, ..view },
     }
 }
@@ -99,8 +101,8 @@ pub fn times_a_constant(make: Make<'_>) -> Option<String> {
     let mut draws = Draws::new("scale of light");
     let mut worst = 0.0_f64;
     let moving = [0.3, -1.4];
-    let moved = [Filter::Mip, Filter::Gauss, Filter::Block].map(|filter| (filter, moving));
-    for (filter, speed_px) in [(Filter::Mip, [0.0; 2])].into_iter().chain(moved) {
+    let moved = [FoveationKind::Mip, FoveationKind::Gauss, FoveationKind::Block].map(|filter| (filter, moving));
+    for (filter, speed_px) in [(FoveationKind::Mip, [0.0; 2])].into_iter().chain(moved) {
         let settings = settings(filter);
         let views = clip(&mut draws, &settings, speed_px);
         let mut post = make(ContextDesc { settings, ..ContextDesc::new(views[0].color.size()) })?;
@@ -220,20 +222,20 @@ pub fn moving_shadow(make: Make<'_>) -> Option<String> {
     let left = |settings: Settings, exponents: &[i32]| -> Option<Vec<_>> {
         exponents.iter().map(|&exponent| light_left(make, settings, exponent, Exposure::Same)).collect()
     };
-    let smr = left(settings(Filter::Mip), &[4, -10])?;
+    let smr = left(settings(FoveationKind::Mip), &[4, -10])?;
     assert!(smr.iter().all(|&l| l < 0.06), "{smr:?}");
     // The planted error: below the smallest normal half the gate does not follow light.
-    let absolute = light_left(make, settings(Filter::Mip), -20, Exposure::Same)?;
+    let absolute = light_left(make, settings(FoveationKind::Mip), -20, Exposure::Same)?;
     assert!(absolute > 0.3, "{absolute}");
     // Gates that are absolute: they hold in this range, and below it with an exposure.
-    let gated = Settings { foveation: settings(Filter::Mip).foveation, ..Settings::weighted() };
+    let gated = Settings { foveation: settings(FoveationKind::Mip).foveation, ..Settings::weighted() };
     let weighted = left(gated, &[0, -2, -4])?;
     assert!(weighted[0] < 0.1 && weighted[1] < 0.1, "{weighted:?}");
-    let planned = left(settings(Filter::Quads), &[0, -6, -10])?;
+    let planned = left(settings(FoveationKind::Quads), &[0, -6, -10])?;
     assert!((planned[0] - planned[1]).abs() < 0.05, "{planned:?}");
     let exposure = Exposure::Scene { exposure: 1024.0 };
     let exposed = |settings: Settings| light_left(make, settings, -10, exposure);
-    assert_eq!([exposed(gated)?, exposed(settings(Filter::Quads))?], [weighted[0], planned[0]]);
+    assert_eq!([exposed(gated)?, exposed(settings(FoveationKind::Quads))?], [weighted[0], planned[0]]);
     // The planted error: no exposure.
     assert!(weighted[2] > 0.5 && planned[2] > planned[0] + 0.2, "{weighted:?}, {planned:?}");
     let percent = |left: &[f64]| left.iter().map(|l| format!("{:.1}", 100.0 * l)).collect::<Vec<_>>().join(", ");

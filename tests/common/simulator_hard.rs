@@ -1,7 +1,7 @@
 //! Hard cases of the foveation simulators, H69 to H71: laws that hold on either executor.
 
 use afterimage::Image;
-use afterimage::internal::{Filter, Foveation};
+use afterimage::internal::{Foveation, FoveationKind};
 use afterimage_testing::Draws;
 
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
@@ -44,8 +44,9 @@ pub fn constant(foveate: Foveate<'_>) -> Option<String> {
             let foveation = Foveation { rate_mid: 1 << level, rate_far: 1 << level, ..Foveation::default() };
             worst = worst.max(off(&foveate(&foveation, &flat(size), [-1e5, 0.0])?));
         }
-        for filter in [Filter::Mip, Filter::Gauss, Filter::Block, Filter::Off] {
-            worst = worst.max(off(&foveate(&Foveation { filter, ..Foveation::default() }, &flat(size), [0.0; 2])?));
+        for filter in [FoveationKind::Mip, FoveationKind::Gauss, FoveationKind::Block, FoveationKind::Off] {
+            worst =
+                worst.max(off(&foveate(&Foveation { kind: filter, ..Foveation::default() }, &flat(size), [0.0; 2])?));
         }
     }
     assert!(worst < 1e-6, "{worst}");
@@ -62,8 +63,8 @@ pub fn mean(foveate: Foveate<'_>) -> Option<String> {
     for size in [[640, 360], [641, 359], [1023, 257]] {
         let mut draws = Draws::new("energy");
         let image = Image::from_fn(size, |_| [draws.uniform(), draws.uniform(), draws.uniform()]);
-        for filter in [Filter::Mip, Filter::Gauss] {
-            let foveation = Foveation { filter, rate_mid: 4, rate_far: 8, ..Foveation::default() };
+        for filter in [FoveationKind::Mip, FoveationKind::Gauss] {
+            let foveation = Foveation { kind: filter, rate_mid: 4, rate_far: 8, ..Foveation::default() };
             let change = (mean(&foveate(&foveation, &image, [300.0, 100.0])?) / mean(&image) - 1.0).abs();
             assert!(change <= 1e-3, "{filter:?} {size:?}: mean changes by {change:.1e}");
             worst = worst.max(change);
@@ -76,8 +77,8 @@ pub fn mean(foveate: Foveate<'_>) -> Option<String> {
 pub fn ramp(foveate: Foveate<'_>) -> Option<String> {
     let image = Image::from_fn([640, 360], |[x, y]| [x as f32 / 640.0, y as f32 / 360.0, 0.5]);
     let mut worst = 0.0_f32;
-    for filter in [Filter::Mip, Filter::Gauss] {
-        let out = foveate(&Foveation { filter, ..Foveation::default() }, &image, [320.0, 180.0])?;
+    for filter in [FoveationKind::Mip, FoveationKind::Gauss] {
+        let out = foveate(&Foveation { kind: filter, ..Foveation::default() }, &image, [320.0, 180.0])?;
         let jump = |a: [f32; 3], b: [f32; 3]| (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f32::max);
         for (x, y) in (17..343).flat_map(|y| (17..623).map(move |x| (x, y))) {
             let [right, below] = [out.at(x + 1, y), out.at(x, y + 1)].map(|next| jump(out.at(x, y), next));

@@ -2,14 +2,15 @@
 
 use crate::images::{noise, pixel, pixels};
 use crate::simulator_hard::*;
-use afterimage::internal::{Filter, Foveation, Pyramid};
+use afterimage::internal::{Foveation, FoveationKind, Pyramid};
 use afterimage::kernel::foveate;
 use afterimage::{Image, ViewGeometry};
 use afterimage_testing::holds;
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 
-const FILTERS: [Filter; 4] = [Filter::Mip, Filter::Gauss, Filter::Block, Filter::Off];
+const FILTERS: [FoveationKind; 4] =
+    [FoveationKind::Mip, FoveationKind::Gauss, FoveationKind::Block, FoveationKind::Off];
 
 /// Levels of detail of a view of 70 degrees.
 fn lods(foveation: &Foveation, size: [u32; 2], gaze: [f32; 2]) -> Image<f32> {
@@ -67,14 +68,14 @@ fn the_fovea_is_copied_bit_for_bit_and_the_rest_is_coarser() {
     let image = noise([640, 360], "fovea");
     let geometry = ViewGeometry::flat([640, 360], 70.0).unwrap();
     let gaze = [200.0, 150.0];
-    for filter in [Filter::Mip, Filter::Gauss, Filter::Block] {
-        let out = foveate(&Foveation { filter, ..Foveation::default() }, &image, gaze);
+    for filter in [FoveationKind::Mip, FoveationKind::Gauss, FoveationKind::Block] {
+        let out = foveate(&Foveation { kind: filter, ..Foveation::default() }, &image, gaze);
         let mut outside_same = 0;
         for px in pixels([640, 360]) {
             let e = geometry.eccentricity_deg(px.map(|v| v as f32), gaze);
             let same = pixel(&out, px) == pixel(&image, px);
             // Centres decide whether blocks are used.
-            assert!(e >= 2.4 || same || filter == Filter::Block && e > 1.0, "{filter:?} at {e} degrees");
+            assert!(e >= 2.4 || same || filter == FoveationKind::Block && e > 1.0, "{filter:?} at {e} degrees");
             outside_same += usize::from(same && e > 8.0);
         }
         assert!(outside_same < 20, "{filter:?}: {outside_same}");
@@ -83,8 +84,8 @@ fn the_fovea_is_copied_bit_for_bit_and_the_rest_is_coarser() {
 
 #[test]
 fn h71_the_level_of_detail_is_continuous_and_monotone() {
-    for filter in [Filter::Mip, Filter::Gauss] {
-        let foveation = Foveation { filter, ..Foveation::default() };
+    for filter in [FoveationKind::Mip, FoveationKind::Gauss] {
+        let foveation = Foveation { kind: filter, ..Foveation::default() };
         let mut before = foveation.lod(0.0);
         assert_eq!(before, 0.0);
         for i in 1..=90_000 {
@@ -117,7 +118,7 @@ fn a_blurred_point_is_a_gaussian() {
     // deviations.
     let mut image = Image::filled([91, 91], [0.0; 3]);
     image.pixels_mut()[45 * 91 + 45] = [1000.0, 100.0, 1.0];
-    let foveation = Foveation { filter: Filter::Gauss, ..Foveation::default() };
+    let foveation = Foveation { kind: FoveationKind::Gauss, ..Foveation::default() };
     let out = foveate(&foveation, &image, [-1e5, 0.0]);
     let sigma = 7.5_f64;
     let radius = foveate::gauss_radius(sigma as f32) as i32;
@@ -134,7 +135,7 @@ fn a_blurred_point_is_a_gaussian() {
 #[test]
 fn blocks_are_aligned_nested_and_constant() {
     let image = noise([320, 180], "blocks");
-    let foveation = Foveation { filter: Filter::Block, ..Foveation::default() };
+    let foveation = Foveation { kind: FoveationKind::Block, ..Foveation::default() };
     let lods = lods(&foveation, [320, 180], [100.0, 90.0]);
     let out = foveation.render(&Pyramid::new(image, 4), &lods);
     for px in pixels([320, 180]) {
@@ -188,15 +189,15 @@ fn a_bad_pixel_does_not_spread() {
     let mut image = Image::filled([64, 64], [0.5; 3]);
     image.pixels_mut()[20 * 64 + 33] = [f32::NAN, 0.5, f32::INFINITY];
     for filter in FILTERS {
-        let out = foveate(&Foveation { filter, ..Foveation::default() }, &image, [0.0, 0.0]);
+        let out = foveate(&Foveation { kind: filter, ..Foveation::default() }, &image, [0.0, 0.0]);
         for (i, c) in out.pixels().iter().enumerate() {
             assert!(c.iter().all(|v| v.is_finite()) || i == 20 * 64 + 33, "{filter:?}");
         }
     }
     // In coarse regions of any gaze the pixel itself is black or blurred, too.
-    for filter in [Filter::Mip, Filter::Gauss, Filter::Block] {
+    for filter in [FoveationKind::Mip, FoveationKind::Gauss, FoveationKind::Block] {
         for x in (0..64).step_by(9) {
-            let foveation = Foveation { filter, rate_mid: 2, rate_far: 4, ..Foveation::default() };
+            let foveation = Foveation { kind: filter, rate_mid: 2, rate_far: 4, ..Foveation::default() };
             let gaze = [x as f32, 0.0];
             let lods = lods(&foveation, [64, 64], gaze);
             let out = foveate(&foveation, &image, gaze);
@@ -213,7 +214,7 @@ proptest! {
     #[test]
     fn any_gaze_and_size_stays_inside_the_picture_s_range(w in 1u32..90, h in 1u32..90, gx in -1e6f32..1e6, gy in -1e6f32..1e6, pick in 0usize..3) {
         let image = noise([w, h], "range");
-        let foveation = Foveation { filter: FILTERS[pick], ..Foveation::default() };
+        let foveation = Foveation { kind: FILTERS[pick], ..Foveation::default() };
         for gaze in [[gx, gy], [gx % 90.0, gy % 90.0]] {
             let out = foveate(&foveation, &image, gaze);
             prop_assert!(out.pixels().iter().flatten().all(|v| (-1e-5..=1.0 + 1e-5).contains(v)));

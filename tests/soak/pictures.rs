@@ -8,7 +8,7 @@ use afterimage::{Gaze, Image, ViewGeometry};
 use std::collections::HashMap;
 
 pub const FOVEATION: Foveation = Foveation {
-    filter: afterimage::internal::Filter::Mip,
+    kind: afterimage::internal::FoveationKind::Mip,
     fovea_deg: 10.0,
     mid_deg: 30.0,
     blend_deg: 2.0,

@@ -11,7 +11,7 @@ use crate::error::InputError;
 use crate::pipeline::{Pipeline, RunKind};
 use crate::source::{AnalyticSource, FrameSource};
 use afterimage::internal::{ComputeShader, filled};
-use afterimage::internal::{Filter, Foveation, MethodKind, Settings};
+use afterimage::internal::{Foveation, FoveationKind, MethodKind, Settings};
 use afterimage::kernel::pack::{half_bits, half_value};
 use afterimage::{CreateError, Image};
 use std::sync::Arc;
@@ -209,7 +209,7 @@ fn formats(gpu: &Headless) -> Finding {
 /// Compares a method's output on the device with that on the CPU, for a few frames of a moving scene.
 fn twins(gpu: &Arc<Headless>, method: MethodKind, is_exact: bool) -> Result<Finding, SelfTestError> {
     let mut source = AnalyticSource::new("lateral", SIZE, 70.0, 60.0)?;
-    let foveation = Foveation { rate_mid: 4, rate_far: 8, filter: Filter::Mip, ..Foveation::default() };
+    let foveation = Foveation { rate_mid: 4, rate_far: 8, kind: FoveationKind::Mip, ..Foveation::default() };
     let settings = Settings { method: method.into(), ..Settings::default() };
     let pipeline = |backend: &Backend| {
         Pipeline::new(*source.view(), foveation, &[RunKind::PostProcess(settings)], false, &[], backend)

@@ -8,7 +8,7 @@ use crate::session::{HiddenMesh, Session, VIEWS};
 use crate::targets::{Targets, layers};
 use crate::vulkan::Gpu;
 use afterimage::gpu::{Afterimage, Frame, Prime};
-use afterimage::internal::{ContextDesc, Filter, Foveation, Method, Reset, Settings, Smr, ViewFrame};
+use afterimage::internal::{ContextDesc, Foveation, FoveationKind, Method, Reset, Settings, Smr, ViewFrame};
 use afterimage::{DepthConvention, Desc, Gaze, SettingsError, Shading, ViewGeometry};
 use openxr as xr;
 use std::time::{Duration, Instant};
@@ -266,7 +266,7 @@ impl Headset {
         self.set_settings(Settings { foveation, ..self.post.desc().settings })
     }
 
-    /// Changes method and foveation, whose filter must be [`Filter::Quads`], from the next frame on: for comparisons.
+    /// Changes method and foveation, whose filter must be [`FoveationKind::Quads`], from the next frame on: for comparisons.
     ///
     /// # Errors
     /// [`Error::Settings`] if a setting is out of range, or the filter is another one; then nothing changes.
@@ -646,8 +646,8 @@ fn settings(shading: Shading, antialias: bool) -> Result<Settings, SettingsError
 
 /// Refuses what a headset's frames are not.
 fn check_filter(settings: &Settings) -> Result<(), SettingsError> {
-    match settings.foveation.filter {
-        Filter::Quads => Ok(()),
+    match settings.foveation.kind {
+        FoveationKind::Quads => Ok(()),
         filter => Err(SettingsError {
             setting: "filter",
             found: filter.name().into(),
@@ -692,11 +692,11 @@ mod tests {
 
     #[test]
     fn filters_without_quads_are_refused() {
-        for filter in Filter::ALL {
-            let foveation = Foveation { filter, ..Foveation::quads() };
+        for filter in FoveationKind::ALL {
+            let foveation = Foveation { kind: filter, ..Foveation::quads() };
             let found = check_filter(&Settings { foveation, ..Settings::default() }).err();
             let is_refused = matches!(&found, Some(error) if error.setting == "filter");
-            assert_eq!(is_refused, filter != Filter::Quads, "{filter:?}: {found:?}");
+            assert_eq!(is_refused, filter != FoveationKind::Quads, "{filter:?}: {found:?}");
         }
     }
 

@@ -6,7 +6,7 @@
 //! Makes figures of `docs/method.md`, with the clips that it names.
 
 use afterimage::ViewGeometry;
-use afterimage::internal::{Filter, Foveation, Method, Settings};
+use afterimage::internal::{Foveation, FoveationKind, Method, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{References, Scorer, encode};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
@@ -21,13 +21,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let number = |i: usize, absent: u64| args.get(i).map_or(Ok(absent), |n| n.parse());
     let filter = match args.get(3).map(String::as_str) {
-        None | Some("mip") => Filter::Mip,
-        Some("gauss") => Filter::Gauss,
-        Some("block") => Filter::Block,
+        None | Some("mip") => FoveationKind::Mip,
+        Some("gauss") => FoveationKind::Gauss,
+        Some("block") => FoveationKind::Block,
         Some(other) => return Err(format!("filter '{other}': expected mip, gauss or block").into()),
     };
     let (rate_mid, rate_far) = (number(4, 8)? as u32, number(5, 16)? as u32);
-    let foveation = Foveation { filter, rate_mid, rate_far, ..Foveation::default() };
+    let foveation = Foveation { kind: filter, rate_mid, rate_far, ..Foveation::default() };
 
     let mut source = source::open(input, &ReadLimits::default(), &SceneOptions::default())?;
     let info = source.info().clone();

@@ -5,7 +5,7 @@
 //! Makes the table "Recording a frame" of `docs/performance.md`; ten seconds.
 
 use afterimage::gpu::{Afterimage, Frame};
-use afterimage::internal::{ContextDesc, Filter, Foveation, Settings, ViewFrame};
+use afterimage::internal::{ContextDesc, Foveation, FoveationKind, Settings, ViewFrame};
 use afterimage::wgpu::{self, Device, Texture, TextureFormat, TextureUsages};
 use afterimage::{Gaze, ViewGeometry};
 use afterimage_lab::clock::Stopwatch;
@@ -58,7 +58,7 @@ fn record_us(settings: Settings, has_all: bool, is_new: bool) -> [f64; 2] {
     let mut textures = [(); 2].map(|()| frame_textures(&device));
     let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
     let gaze_px = [160.0, 90.0];
-    let is_planned = settings.foveation.filter == Filter::Quads;
+    let is_planned = settings.foveation.kind == FoveationKind::Quads;
     let mut times = [0.0; 2];
     for index in 0..WARM_UP + RECORDED {
         let set = &mut textures[(index % 2) as usize];

@@ -7,7 +7,7 @@
 //!
 //! Makes tables of `docs/method.md` and `docs/metrics.md`.
 
-use afterimage::internal::{Filter, Foveation, MethodKind, Settings};
+use afterimage::internal::{Foveation, FoveationKind, MethodKind, Settings};
 use afterimage::{FrameError, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::frame::RenderedFrame;
@@ -91,9 +91,9 @@ fn rows(source: &dyn FrameSource, input: &str, scanpaths: &str) -> Result<Vec<Ro
     let mut rows = vec![];
     for file in scanpaths.split(',') {
         let path = read_csv(file)?;
-        for filter in [Filter::Mip, Filter::Block] {
+        for filter in [FoveationKind::Mip, FoveationKind::Block] {
             for [rate_mid, rate_far] in RATES {
-                let foveation = Foveation { filter, rate_mid, rate_far, ..Foveation::default() };
+                let foveation = Foveation { kind: filter, rate_mid, rate_far, ..Foveation::default() };
                 let fps = info.fps.unwrap_or(60.0);
                 let map = GazeMap::default_for(path.screen());
                 rows.push(Row {

@@ -8,7 +8,7 @@ mod show;
 mod space;
 mod stage;
 
-use afterimage::internal::{Filter, Foveation, MethodKind, Settings};
+use afterimage::internal::{FoveationKind, Foveation, MethodKind, Settings};
 use gpu::Gpu;
 use show::{Marks, Show};
 use stage::Stage;
@@ -88,8 +88,8 @@ impl Demo {
         rate_far: u32,
     ) -> Result<()> {
         let method = MethodKind::from_name(method).ok_or_else(|| JsError::new(method))?;
-        let filter = Filter::ALL.into_iter().find(|f| f.name() == filter).ok_or_else(|| JsError::new(filter))?;
-        let rates = Foveation { filter, fovea_deg, mid_deg, rate_mid, rate_far, ..Foveation::default() };
+        let filter = FoveationKind::ALL.into_iter().find(|f| f.name() == filter).ok_or_else(|| JsError::new(filter))?;
+        let rates = Foveation { kind: filter, fovea_deg, mid_deg, rate_mid, rate_far, ..Foveation::default() };
         let foveation = Foveation { single_pixels: true, budget: BUDGET, ..rates };
         self.stage.configure(&self.gpu, Settings { method: method.into(), foveation, ..Settings::default() })
     }

@@ -4,7 +4,7 @@ use crate::Result;
 use crate::gpu::{Dispatch, Gpu};
 use crate::space::{self, Images, Space};
 use afterimage::gpu::{Afterimage, Frame};
-use afterimage::internal::{ContextDesc, Filter, GpuSimulator, Method, Settings, SimulatorFrame, ViewFrame};
+use afterimage::internal::{ContextDesc, FoveationKind, GpuSimulator, Method, Settings, SimulatorFrame, ViewFrame};
 use afterimage::kernel::color::{srgb_decode, srgb_encode};
 use afterimage::{Gaze, ViewGeometry};
 use wasm_bindgen::JsError;
@@ -104,8 +104,8 @@ impl Stage {
         match &mut self.source {
             Source::Picture { simulator, .. } => {
                 self.desc.depth = ContextDesc::new(self.size_px).depth;
-                *simulator = match self.desc.settings.foveation.filter {
-                    Filter::Quads => None,
+                *simulator = match self.desc.settings.foveation.kind {
+                    FoveationKind::Quads => None,
                     _ => Some(GpuSimulator::new(&gpu.device, &self.desc, FORMAT)?),
                 };
             }
@@ -182,7 +182,7 @@ impl Stage {
 
     /// Whether the post-process chooses the pixels.
     pub fn is_planned(&self) -> bool {
-        self.desc.settings.foveation.filter == Filter::Quads
+        self.desc.settings.foveation.kind == FoveationKind::Quads
     }
 
     /// Records a frame; its inputs. `seconds`: time of the camera.

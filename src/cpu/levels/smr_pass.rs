@@ -11,7 +11,7 @@
 use super::surface_history::{Source, SurfaceHistory};
 use super::surface_pass::SurfaceMethod;
 use crate::cpu::pixel::Pixel;
-use crate::foveation::Filter;
+use crate::foveation::FoveationKind;
 use crate::kernel::approx;
 use crate::kernel::color;
 use crate::kernel::debug_view::PixelTrace;
@@ -137,7 +137,7 @@ impl Smr {
         let radius = 0.75 * approx::exp2_approx(lod);
         let blocks = self.params.blocks;
         // Levels of history are means of blocks, not Gaussian blurs: the two agree better one level coarser.
-        let gauss = self.settings.foveation.filter == Filter::Gauss;
+        let gauss = self.settings.foveation.kind == FoveationKind::Gauss;
         let changed = self.params.relight
             && smr::may_relight(reuse.finer, false)
             && smr::is_changed(own, matched, level, next_level);

@@ -6,7 +6,7 @@ pub(crate) mod uniforms;
 
 use crate::context::ContextDesc;
 use crate::error::{CreateError, FrameError};
-use crate::foveation::Filter;
+use crate::foveation::FoveationKind;
 use crate::frame::Exposure;
 use crate::gpu::buffer::filled;
 use crate::gpu::compute::{ComputeShader, Sources};
@@ -96,12 +96,12 @@ impl GpuSimulator {
             show: writing(name, texel),
         };
         let foveation = desc.settings.foveation;
-        let steps = match foveation.filter {
-            Filter::Mip => levels(foveation.max_level(), "mip_show"),
-            Filter::Block => levels(block_sample_level(foveation.max_level()), "block_show"),
+        let steps = match foveation.kind {
+            FoveationKind::Mip => levels(foveation.max_level(), "mip_show"),
+            FoveationKind::Block => levels(block_sample_level(foveation.max_level()), "block_show"),
             // Blocks of one pixel copy the full-rate frame: the post-process reads only the samples of a planned frame.
-            Filter::Off | Filter::Quads => levels(0, "block_show"),
-            Filter::Gauss => Steps::Axes {
+            FoveationKind::Off | FoveationKind::Quads => levels(0, "block_show"),
+            FoveationKind::Gauss => Steps::Axes {
                 across: writing("gauss_axis", "rgba32float"),
                 between: plane(TextureFormat::Rgba32Float, desc.size_px, desc.view_count),
                 down: writing("gauss_axis", texel),

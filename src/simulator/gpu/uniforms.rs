@@ -1,7 +1,7 @@
 //! Uniforms of the simulators.
 
 use crate::context::ContextDesc;
-use crate::foveation::Filter;
+use crate::foveation::FoveationKind;
 use crate::uniforms::{MAX_VIEWS, ViewState, ViewUniforms};
 use crate::view::ViewFrame;
 use bytemuck::{Pod, Zeroable};
@@ -28,7 +28,11 @@ impl FoveationUniforms {
         let [lod_mid, lod_far] = foveation.lods();
         let mut uniforms = Self {
             size: desc.size_px,
-            coarsest: if matches!(foveation.filter, Filter::Off | Filter::Quads) { 0 } else { foveation.max_level() },
+            coarsest: if matches!(foveation.kind, FoveationKind::Off | FoveationKind::Quads) {
+                0
+            } else {
+                foveation.max_level()
+            },
             fovea_radius_deg: foveation.fovea_radius_deg(),
             mid_radius_deg: foveation.mid_radius_deg(),
             blend_deg: foveation.blend_deg,

@@ -2,7 +2,7 @@
 
 use super::quads::{BUDGET, Needs, show, show_shaded, wall};
 use super::*;
-use afterimage::internal::{Filter, Foveation, Smr};
+use afterimage::internal::{Foveation, FoveationKind, Smr};
 use afterimage_testing::holds;
 
 type Mask = Image<bool>;
@@ -218,10 +218,10 @@ fn masks_of_frames_without_a_plan_are_refused() {
         let mut shown = [Image::filled(SIZE, [0.0; 3])];
         post.process(&images.frame(0), &mut shown).unwrap_err().to_string()
     };
-    let expected = "mask of view 0 is given: expected set Filter::Quads in Settings::foveation";
+    let expected = "mask of view 0 is given: expected set FoveationKind::Quads in Settings::foveation";
     assert_eq!(refused(&mut post, &view), expected);
     let mut post = context(Settings { foveation: Foveation::quads(), ..Settings::default() });
-    assert_eq!(post.desc().settings.foveation.filter, Filter::Quads);
+    assert_eq!(post.desc().settings.foveation.kind, FoveationKind::Quads);
     let error = post.plan(&Images::of([&view]).frame(0)).unwrap_err().to_string();
     assert_eq!(error, "plan of view 0 is asked for: expected no plan, or no mask: a mask says which pixels are shaded");
     // Of another size.

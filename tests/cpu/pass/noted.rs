@@ -3,7 +3,7 @@
 use super::*;
 use crate::any_frame::{SIZE, all_settings, any_frame};
 use crate::images::planned;
-use afterimage::internal::{Filter, Foveation, Smr};
+use afterimage::internal::{Foveation, FoveationKind, Smr};
 use afterimage::internal::{Note, NoteStage, NoteValues, PixelNotes};
 use std::collections::BTreeSet;
 
@@ -29,8 +29,8 @@ fn all_kinds() -> Vec<Settings> {
 fn frame(draws: &mut Draws, settings: &Settings, index: u64) -> View {
     let view = any_frame(draws, 0.03).with(|view| view.noise = view.noise.take().filter(|_| settings.noisy));
     let whole = |view: View| view.with(|view| view.lod = None);
-    match settings.foveation.filter {
-        Filter::Quads => whole(view).with(|view| view.facts.jitter_px = Foveation::jitter_px(index + 1)),
+    match settings.foveation.kind {
+        FoveationKind::Quads => whole(view).with(|view| view.facts.jitter_px = Foveation::jitter_px(index + 1)),
         _ => view,
     }
 }
@@ -75,7 +75,7 @@ fn agree(pixel: &PixelNotes, shown: [f32; 3], stored: &[u32]) -> bool {
 fn notes_are_what_the_pass_computed_and_change_nothing() {
     let mut texts = BTreeSet::new();
     for (kind, settings) in all_kinds().into_iter().enumerate() {
-        let name = format!("{kind}: {} of {:?}", settings.method.name(), settings.foveation.filter);
+        let name = format!("{kind}: {} of {:?}", settings.method.name(), settings.foveation.kind);
         let mut draws = Draws::new(&format!("notes about {kind}"));
         let desc = ContextDesc { settings, ..ContextDesc::new(SIZE) };
         let [mut plain, mut noted, mut late] = [(); 3].map(|()| CpuAfterimage::new(&desc).unwrap());

@@ -317,7 +317,7 @@ fn plans_of_other_frames_are_refused() {
     let view = wall(0, Needs::Settled);
     let images = Images::of([&view]);
     let error = post.plan(&images.frame(0)).unwrap_err().to_string();
-    assert_eq!(error, "plan of view 0 is asked for: expected Filter::Quads in Settings::foveation");
+    assert_eq!(error, "plan of view 0 is asked for: expected FoveationKind::Quads in Settings::foveation");
 }
 
 proptest! {

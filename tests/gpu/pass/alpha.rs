@@ -89,7 +89,8 @@ fn alpha_that_is_not_kept_takes_no_memory() {
     let bytes = |settings, keep_alpha| {
         let desc = ContextDesc { settings, keep_alpha, ..ContextDesc::new(SIZE) };
         let post = Afterimage::new(&device.0, &desc, TextureFormat::Rgba16Float).unwrap();
-        let is_planned_smr = settings.method.kind() == MethodKind::Smr && settings.foveation.filter == Filter::Quads;
+        let is_planned_smr =
+            settings.method.kind() == MethodKind::Smr && settings.foveation.kind == FoveationKind::Quads;
         assert_eq!(post.alpha_texture().is_some(), keep_alpha && is_planned_smr);
         post.memory_bytes()
     };

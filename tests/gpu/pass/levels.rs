@@ -40,7 +40,7 @@ fn frames_are_those_of_the_full_context() {
     let default = Settings::default();
     let smr = Smr { accumulate: 0.5, tolerance: 2.0, relight: false, antialias: false };
     let own_smr = levels::Smr { accumulate: 0.5, tolerance: 2.0, relight: false };
-    let block = Foveation { filter: Filter::Block, rate_far: 4, rate_mid: 2, ..Foveation::default() };
+    let block = Foveation { kind: FoveationKind::Block, rate_far: 4, rate_mid: 2, ..Foveation::default() };
     let own = levels::Foveation { filter: levels::Filter::Block, rate_far: 4, rate_mid: 2, ..Default::default() };
     let own_default = levels::Settings::default();
     let cases = [
@@ -80,14 +80,14 @@ fn another_foveation_is_caught() {
 #[test]
 fn filters_have_the_levels_of_the_passes() {
     let filters = [
-        (levels::Filter::Mip, Filter::Mip),
-        (levels::Filter::Gauss, Filter::Gauss),
-        (levels::Filter::Block, Filter::Block),
-        (levels::Filter::Off, Filter::Off),
+        (levels::Filter::Mip, FoveationKind::Mip),
+        (levels::Filter::Gauss, FoveationKind::Gauss),
+        (levels::Filter::Block, FoveationKind::Block),
+        (levels::Filter::Off, FoveationKind::Off),
     ];
     for (own, filter) in filters {
         let own = levels::Foveation { filter: own, ..Default::default() };
-        let foveation = Foveation { filter, ..Foveation::default() };
+        let foveation = Foveation { kind: filter, ..Foveation::default() };
         for e_deg in [0.0, 2.9, 5.0, 8.1, 30.0, 90.0] {
             assert_eq!(own.lod(e_deg).to_bits(), foveation.lod(e_deg).to_bits(), "{own:?} at {e_deg} degrees");
         }

@@ -40,9 +40,9 @@ fn h27_stereo_is_one_dispatch_without_a_leak() {
 #[test]
 fn h79_poisoned_fresh_history_is_never_visible() {
     for method in METHODS {
-        for filter in [Filter::Mip, Filter::Block] {
+        for filter in [FoveationKind::Mip, FoveationKind::Block] {
             let base = surfaces_hard::settings(method);
-            let settings = Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
+            let settings = Settings { foveation: Foveation { kind: filter, ..base.foveation }, ..base };
             for size in [[65, 33], [3, 2]] {
                 let desc = ContextDesc::new(size);
                 let Some(mut rig) = Rig::new(desc, settings) else { return };

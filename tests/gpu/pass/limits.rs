@@ -76,7 +76,7 @@ fn every_method_runs_on_the_smallest_device() {
             let views = [view; 2];
             let noise = settings.noisy.then_some((&noise_texture).into());
             let frame = Frame { noise, ..Frame::new(&color, &views, index) };
-            if settings.foveation.filter == Filter::Quads {
+            if settings.foveation.kind == FoveationKind::Quads {
                 bare.plan(&mut post, &frame);
             }
             bare.record(&mut post, &frame, &output).unwrap();

@@ -34,7 +34,7 @@ mod targets;
 use crate::settings::{ungated, ungated_of, wrs};
 use afterimage::gpu::{Afterimage, DebugTarget, Frame, Prime, Region, Target, Textures};
 use afterimage::internal::{
-    Bias, ContextDesc, Filter, Foveation, Method, MethodKind, Reset, Sampler, Settings, Smr, ViewFrame, Wrs,
+    Bias, ContextDesc, Foveation, FoveationKind, Method, MethodKind, Reset, Sampler, Settings, Smr, ViewFrame, Wrs,
 };
 use afterimage::internal::{Sources, method_pass};
 use afterimage::kernel::{pack, stored_reservoir};

@@ -37,7 +37,7 @@ impl Written {
 fn made(settings: Settings, is_new: bool) -> [usize; 3] {
     let mut written = Written::new(settings);
     let mut sets = [(); 2].map(|()| written.textures());
-    let is_planned = settings.foveation.filter == Filter::Quads;
+    let is_planned = settings.foveation.kind == FoveationKind::Quads;
     let count =
         |written: &Written| ["CreateBindGroup(", "CreateTextureView", "CreateBuffer("].map(|call| written.count(call));
     let mut before = [0; 3];

@@ -4,7 +4,7 @@ use crate::images::{Images, held_words, pixel, pixels, planned, traced, traced_a
 pub use crate::images::{View, noise};
 use afterimage::cpu::CpuAfterimage;
 use afterimage::gpu::{Afterimage, DebugTarget, Frame, Region, Target, Textures};
-use afterimage::internal::{ContextDesc, Filter, Reset, Settings};
+use afterimage::internal::{ContextDesc, FoveationKind, Reset, Settings};
 use afterimage::internal::{Sources, method_pass};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::{pack, stored_reservoir};
@@ -277,7 +277,7 @@ impl Rig {
 
     /// Whether frames are shaded by quads.
     fn is_by_quads(&self) -> bool {
-        self.cpu.desc().settings.foveation.filter == Filter::Quads
+        self.cpu.desc().settings.foveation.kind == FoveationKind::Quads
     }
 
     /// Stored history of both executors.

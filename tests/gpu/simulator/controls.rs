@@ -3,7 +3,7 @@
 
 use super::rig::*;
 use afterimage::internal::Sources;
-use afterimage::internal::{Filter, Foveation};
+use afterimage::internal::{Foveation, FoveationKind};
 use afterimage::shader::SHADERS;
 use afterimage_testing::planted::all_caught;
 
@@ -11,7 +11,7 @@ use afterimage_testing::planted::all_caught;
 const PASSES: [&str; 4] = ["mip_level", "mip_show", "block_show", "gauss_axis"];
 
 /// Fails unless each planted error in the passes makes the executors differ on a frame that is filtered.
-fn caught(filter: Filter, errors: &[(&str, &str)]) {
+fn caught(filter: FoveationKind, errors: &[(&str, &str)]) {
     // Even and odd: the one reads beyond the last texel's centre, the other has texels of one pixel.
     let size = [96, 61];
     // A fovea wide enough to contain non-finite pixels.
@@ -40,7 +40,7 @@ fn planted_errors_in_mip_are_caught() {
         ("textureLoad(full, px, view, 0)", "textureLoad(full, px, 0u, 0)"),
         ("shown = color(shown).color;", ""),
     ];
-    caught(Filter::Mip, &[&OF_ONE_EYE[..], &planted].concat());
+    caught(FoveationKind::Mip, &[&OF_ONE_EYE[..], &planted].concat());
 }
 
 #[test]
@@ -49,11 +49,11 @@ fn planted_errors_in_gauss_are_caught() {
         ("AXIS == 0u", "AXIS == 1u"),
         ("color(textureLoad(color_in, at, view, 0).xyz).color", "textureLoad(color_in, at, view, 0).xyz"),
     ];
-    caught(Filter::Gauss, &[&OF_ONE_EYE[..], &planted].concat());
+    caught(FoveationKind::Gauss, &[&OF_ONE_EYE[..], &planted].concat());
 }
 
 #[test]
 fn planted_errors_in_block_are_caught() {
     let planted = [("view, source - 1u)", "view, source)"), ("lod >= f32(level)", "lod > f32(level)")];
-    caught(Filter::Block, &[&OF_ONE_EYE[..], &planted].concat());
+    caught(FoveationKind::Block, &[&OF_ONE_EYE[..], &planted].concat());
 }

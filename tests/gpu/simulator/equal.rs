@@ -1,7 +1,7 @@
 //! Every filter, size, rate and gaze, over frames with NaN, infinity and extreme values.
 
 use super::rig::*;
-use afterimage::internal::Filter;
+use afterimage::internal::FoveationKind;
 
 const RATES: [[u32; 2]; 2] = [[1, 2], [16, 64]];
 
@@ -11,7 +11,7 @@ fn gazes([w, h]: [u32; 2]) -> [[f32; 2]; 5] {
     [[0.3 * w, 0.6 * h], [w - 1.0, 0.5 * h], [-0.5, -0.5], [-0.7 * w, 1.5 * h], [1e6, -1e6]]
 }
 
-fn agree(filter: Filter, size: [u32; 2], rates: &[[u32; 2]]) {
+fn agree(filter: FoveationKind, size: [u32; 2], rates: &[[u32; 2]]) {
     let mut levels = std::collections::BTreeSet::new();
     for &rates in rates {
         let foveation = foveation(filter, rates);
@@ -27,7 +27,7 @@ fn agree(filter: Filter, size: [u32; 2], rates: &[[u32; 2]]) {
     println!("{filter:?}, {size:?}: levels {levels:?}");
 }
 
-fn agree_at_odd_sizes(filter: Filter) {
+fn agree_at_odd_sizes(filter: FoveationKind) {
     for size in [[1, 1], [17, 1], [1, 33], [97, 61]] {
         agree(filter, size, &RATES);
     }
@@ -36,30 +36,30 @@ fn agree_at_odd_sizes(filter: Filter) {
 
 #[test]
 fn mip_is_bit_equal_h69() {
-    agree_at_odd_sizes(Filter::Mip);
-    agree(Filter::Mip, [300, 200], &[[16, 256]]);
+    agree_at_odd_sizes(FoveationKind::Mip);
+    agree(FoveationKind::Mip, [300, 200], &[[16, 256]]);
 }
 
 #[test]
 fn gauss_is_bit_equal() {
-    agree_at_odd_sizes(Filter::Gauss);
+    agree_at_odd_sizes(FoveationKind::Gauss);
 }
 
 #[test]
 fn block_is_bit_equal() {
-    agree_at_odd_sizes(Filter::Block);
-    agree(Filter::Block, [300, 200], &[[16, 256]]);
+    agree_at_odd_sizes(FoveationKind::Block);
+    agree(FoveationKind::Block, [300, 200], &[[16, 256]]);
 }
 
 #[test]
 fn off_copies_every_bit() {
-    agree(Filter::Off, [97, 61], &[[8, 16]]);
+    agree(FoveationKind::Off, [97, 61], &[[8, 16]]);
 }
 
 #[test]
 fn two_eyes_have_their_own_frame_geometry_and_gaze_h62() {
     let size = [97, 61];
-    for filter in [Filter::Mip, Filter::Gauss, Filter::Block] {
+    for filter in [FoveationKind::Mip, FoveationKind::Gauss, FoveationKind::Block] {
         let foveation = foveation(filter, [4, 16]);
         let Some(mut rig) = Rig::new(&desc(size, 2, foveation)) else { return };
         for gazes in [[[20.0, 30.0], [70.0, 10.0]], [[-5.0, 0.0], [96.0, 60.0]]] {

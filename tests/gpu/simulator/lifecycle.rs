@@ -1,7 +1,7 @@
 //! Several frames in one submission, lost gazes, formats, errors.
 
 use super::rig::*;
-use afterimage::internal::{Filter, Foveation, GpuSimulator, SimulatorFrame};
+use afterimage::internal::{Foveation, FoveationKind, GpuSimulator, SimulatorFrame};
 use afterimage::wgpu::{self, TextureFormat, TextureUsages};
 use afterimage::{CreateError, FrameError, Gaze, ViewGeometry};
 use afterimage_testing::agree;
@@ -10,7 +10,7 @@ const SIZE: [u32; 2] = [97, 61];
 
 #[test]
 fn frames_of_one_submission_see_their_own_gaze() {
-    for filter in [Filter::Mip, Filter::Gauss, Filter::Block] {
+    for filter in [FoveationKind::Mip, FoveationKind::Gauss, FoveationKind::Block] {
         let foveation = foveation(filter, [4, 16]);
         let Some(mut rig) = Rig::new(&desc(SIZE, 1, foveation)) else { return };
         let written = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC;
@@ -34,7 +34,7 @@ fn frames_of_one_submission_see_their_own_gaze() {
 
 #[test]
 fn a_lost_gaze_is_held() {
-    let foveation = foveation(Filter::Mip, [4, 16]);
+    let foveation = foveation(FoveationKind::Mip, [4, 16]);
     let Some(mut rig) = Rig::new(&desc(SIZE, 1, foveation)) else { return };
     let mut scene = Scene::mono(nasty(SIZE, "lost"), [48.0, 30.0]);
     let middle = scene.on_cpu(&foveation);

@@ -3,7 +3,7 @@
 pub use crate::pass::rig::make_texture as texture;
 use afterimage::internal::Sources;
 use afterimage::internal::{
-    ContextDesc, Filter, Foveation, GpuSimulator, Pyramid, Settings, SimulatorFrame, ViewFrame,
+    ContextDesc, Foveation, FoveationKind, GpuSimulator, Pyramid, Settings, SimulatorFrame, ViewFrame,
 };
 use afterimage::wgpu::{Device, Queue, Texture, TextureFormat, TextureUsages};
 use afterimage::{Gaze, Image, ViewGeometry};
@@ -153,6 +153,6 @@ pub fn nasty(size: [u32; 2], name: &str) -> Image<[f32; 3]> {
     })
 }
 
-pub fn foveation(filter: Filter, [rate_mid, rate_far]: [u32; 2]) -> Foveation {
-    Foveation { filter, rate_mid, rate_far, ..Foveation::default() }
+pub fn foveation(filter: FoveationKind, [rate_mid, rate_far]: [u32; 2]) -> Foveation {
+    Foveation { kind: filter, rate_mid, rate_far, ..Foveation::default() }
 }

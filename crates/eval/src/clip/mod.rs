@@ -18,7 +18,7 @@ use crate::quad_views::{Geometry, QuadViewLayout};
 use crate::report::sheet::{Column, Sheet};
 use crate::source::FrameSource;
 use crate::times::{RenderTime, Times};
-use afterimage::internal::{Filter, Foveation, MethodKind};
+use afterimage::internal::{Foveation, FoveationKind, MethodKind};
 use afterimage::{CreateError, DebugView, FrameError, Image, ViewGeometry};
 use afterimage_metric::{Display, Viewing};
 use pixel::ExplainedPixel;
@@ -161,9 +161,9 @@ pub fn title(name: &str, size: [u32; 2], frames: usize, fps: f32, foveation: &st
 
 /// Regions of a foveation in words.
 pub fn foveation_words(foveation: &Foveation, simulator: &str) -> String {
-    let Foveation { filter, fovea_deg, rate_mid, rate_far, budget, .. } = foveation;
+    let Foveation { kind: filter, fovea_deg, rate_mid, rate_far, budget, .. } = foveation;
     let budget = match filter {
-        Filter::Quads => format!(" and {} % by need", 100.0 * budget),
+        FoveationKind::Quads => format!(" and {} % by need", 100.0 * budget),
         _ => String::new(),
     };
     format!("fovea {fovea_deg} deg, blocks {rate_mid} and {rate_far} px, {simulator}{budget}")

@@ -6,7 +6,7 @@ use crate::method_report::MethodReport;
 use crate::output::{Output, WriteError};
 use crate::pipeline::ProcessorInfo;
 use crate::times::RenderTime;
-use afterimage::internal::Filter;
+use afterimage::internal::FoveationKind;
 use afterimage_metric::Display;
 use serde::Serialize;
 
@@ -140,7 +140,7 @@ pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out:
             blend_deg: foveation.blend_deg,
             rate_mid: foveation.rate_mid,
             rate_far: foveation.rate_far,
-            budget_percent: (foveation.filter == Filter::Quads).then_some(100.0 * foveation.budget),
+            budget_percent: (foveation.kind == FoveationKind::Quads).then_some(100.0 * foveation.budget),
             scale: facts.scale,
             ms: report.foveation_ms,
         },

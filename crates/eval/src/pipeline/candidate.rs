@@ -1,7 +1,7 @@
 //! The foveated frame, as input of a pipeline's methods.
 
 use afterimage::Image;
-use afterimage::internal::{Filter, Pyramid, ViewFrame};
+use afterimage::internal::{FoveationKind, Pyramid, ViewFrame};
 use std::borrow::Cow;
 
 /// A foveated frame.
@@ -35,8 +35,8 @@ impl<'a> InMemory<'a> {
     }
 }
 
-/// Whether methods need the levels of detail of a simulated frame as an input. `Filter::Block` evaluates the level at
+/// Whether methods need the levels of detail of a simulated frame as an input. `FoveationKind::Block` evaluates the level at
 /// the center of a block, which a method cannot derive from the gaze.
-pub fn needs_lod(filter: Filter) -> bool {
-    filter == Filter::Block
+pub fn needs_lod(filter: FoveationKind) -> bool {
+    filter == FoveationKind::Block
 }

@@ -3,7 +3,7 @@
 use super::candidate::{Candidate, InMemory, needs_lod};
 use crate::frame::{Content, DeviceContent, RenderedFrame};
 use crate::quad_views::Geometry;
-use afterimage::internal::{Filter, Foveation, Pyramid, ViewFrame};
+use afterimage::internal::{Foveation, FoveationKind, Pyramid, ViewFrame};
 use afterimage::{Gaze, Image, ViewGeometry};
 use std::borrow::Cow;
 
@@ -58,12 +58,12 @@ impl Foveator {
             Some(pyramid) => pyramid,
             // Methods read only the shaded pixels of planned frames.
             None => {
-                let is_sampled = self.foveation.filter == Filter::Quads;
+                let is_sampled = self.foveation.kind == FoveationKind::Quads;
                 let most = if is_sampled { 0 } else { self.foveation.max_level() };
                 Pyramid::new(frame.given().color.clone(), most)
             }
         });
-        let has_lod = needs_lod(self.foveation.filter);
+        let has_lod = needs_lod(self.foveation.kind);
         let in_memory = pyramid.as_ref().map(|pyramid| {
             let color = Cow::Owned(self.foveation.render(pyramid, &lods));
             InMemory { has_lod, ..InMemory::new(color) }

@@ -18,7 +18,7 @@ use crate::frame::{RenderedFrame, Shaded, ShadingRequest};
 use crate::metric::{Tracked, Tracker};
 use crate::quad_views::{Geometry, QuadViewLayout};
 use crate::source::{FrameRequest, Wanted};
-use afterimage::internal::{ContextDesc, Filter, Foveation, Method, Settings};
+use afterimage::internal::{ContextDesc, Foveation, FoveationKind, Method, Settings};
 use afterimage::{CreateError, DebugView, FrameError, FrameValue, Gaze, Image, SettingsError, ViewGeometry};
 use foveator::Foveator;
 use oracle::Oracle;
@@ -145,7 +145,7 @@ impl Pipeline {
         let wanted = match self.quad_views {
             Some(layout) => Wanted::QuadViews(layout.views(foveation, geometry, gaze_px)),
             // A fovea of the whole view is a full-rate frame.
-            None if foveation.filter == Filter::Quads && foveation.fovea_deg < 180.0 => Wanted::Surfaces,
+            None if foveation.kind == FoveationKind::Quads && foveation.fovea_deg < 180.0 => Wanted::Surfaces,
             None => Wanted::FullRate,
         };
         FrameRequest {
@@ -270,9 +270,9 @@ impl Pipeline {
 }
 
 fn check_oracle(foveation: &Foveation) -> Result<(), CreateError> {
-    if foveation.filter == Filter::Quads {
+    if foveation.kind == FoveationKind::Quads {
         let expected = "another one: the oracle's best level of detail is not defined for moving samples".into();
-        Err(SettingsError { setting: "foveation filter", found: foveation.filter.name().into(), expected })?;
+        Err(SettingsError { setting: "foveation filter", found: foveation.kind.name().into(), expected })?;
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use crate::clock::Elapsed;
 use afterimage::internal::Note;
-use afterimage::internal::{Filter, Settings};
+use afterimage::internal::{FoveationKind, Settings};
 use afterimage::{FrameError, FrameStats, FrameValue, Image, SettingsError};
 use std::sync::Arc;
 
@@ -38,9 +38,9 @@ pub struct MethodOutput {
     pub notes: Vec<Note>,
 }
 
-/// Whether runs of these settings choose all pixels that are shaded: frames of [`Filter::Quads`].
+/// Whether runs of these settings choose all pixels that are shaded: frames of [`FoveationKind::Quads`].
 pub fn chooses(settings: &Settings) -> bool {
-    settings.foveation.filter == Filter::Quads
+    settings.foveation.kind == FoveationKind::Quads
 }
 
 /// Error for a frame whose source shades no chosen pixels.

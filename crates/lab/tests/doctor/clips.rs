@@ -2,7 +2,7 @@
 
 use afterimage::cpu;
 use afterimage::doctor::Finding;
-use afterimage::internal::{ContextDesc, Filter, Foveation, Pyramid, Reset, ViewFrame};
+use afterimage::internal::{ContextDesc, Foveation, FoveationKind, Pyramid, Reset, ViewFrame};
 use afterimage::{DepthConvention, Gaze, Image, MotionConvention, ViewGeometry};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::source::{self, ReadLimits, SceneOptions};
@@ -123,7 +123,7 @@ pub fn foveated(
     geometry: &ViewGeometry,
     gaze_px: [f32; 2],
 ) -> Image<[f32; 3]> {
-    if foveation.filter == Filter::Quads {
+    if foveation.kind == FoveationKind::Quads {
         return full.clone();
     }
     let lods = foveation.lod_map(geometry, gaze_px);
@@ -133,6 +133,6 @@ pub fn foveated(
 /// Foveations of the clips: mip levels and blocks.
 pub fn foveations() -> [Foveation; 2] {
     let regions = Foveation { fovea_deg: 16.0, mid_deg: 40.0, rate_mid: 4, rate_far: 8, ..Foveation::default() };
-    let blocks = Foveation { filter: Filter::Block, rate_mid: 2, rate_far: 4, ..regions };
-    [Foveation { filter: Filter::Mip, ..regions }, blocks]
+    let blocks = Foveation { kind: FoveationKind::Block, rate_mid: 2, rate_far: 4, ..regions };
+    [Foveation { kind: FoveationKind::Mip, ..regions }, blocks]
 }

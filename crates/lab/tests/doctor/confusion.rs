@@ -53,7 +53,7 @@ struct Column {
 
 fn column(clip: &Clip, foveation: Foveation) -> Column {
     let delivery = Delivery::right(clip, foveation);
-    let context = format!("{} {:?}", clip.name, foveation.filter);
+    let context = format!("{} {:?}", clip.name, foveation.kind);
     let findings = delivery.findings();
     let accused = findings.iter().filter(|f| f.fault().is_some());
     let mut misnamed: Vec<_> = accused.map(|f| format!("{context}: right input: {f}")).collect();

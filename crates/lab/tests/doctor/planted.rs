@@ -4,7 +4,7 @@ use super::clips::{Clip, Delivery, FORWARD, REVERSED, stored};
 use afterimage::MotionUnit::Uv;
 use afterimage::doctor::Fault::*;
 use afterimage::doctor::{Check, Fault};
-use afterimage::internal::{Filter, Foveation};
+use afterimage::internal::{Foveation, FoveationKind};
 use afterimage::kernel::color::srgb_encode;
 use afterimage::{DepthConvention as Convention, Gaze, MotionConvention};
 
@@ -113,7 +113,7 @@ fn double_rates(f: &mut Foveation) {
 }
 
 fn change_filter(f: &mut Foveation) {
-    f.filter = if f.filter == Filter::Mip { Filter::Block } else { Filter::Mip };
+    f.kind = if f.kind == FoveationKind::Mip { FoveationKind::Block } else { FoveationKind::Mip };
 }
 
 fn state_jitter(delivery: &mut Delivery) {
@@ -187,9 +187,11 @@ pub const PLANTED: [Planted; 24] = [
     planted("gaze: origin in the middle", Fault::Gaze, "[x + 0.5 * width, y + 0.5 * height]", |_, d| {
         gazes(d, |[x, y], [w, h]| [x - 0.5 * w, y - 0.5 * h])
     }),
-    planted("foveation: stated off", FoveationFilter, "{ filter: Filter::", |_, d| foveation(d).filter = Filter::Off),
+    planted("foveation: stated off", FoveationFilter, "{ filter: Filter::", |_, d| {
+        foveation(d).kind = FoveationKind::Off
+    }),
     planted("foveation: another filter", FoveationFilter, "{ filter: Filter::", |_, d| change_filter(foveation(d))),
     planted("foveation: radii, stated as diameters", FoveationRegions, REGIONS, |_, d| halve_regions(foveation(d))),
     planted("foveation: blocks twice as large", FoveationRates, "rate_mid: ", |_, d| double_rates(foveation(d))),
-    planted("foveation: none", NotFoveated, "{ filter: Filter::Off, ..", show_full_rate),
+    planted("foveation: none", NotFoveated, "{ kind: FoveationKind::Off, ..", show_full_rate),
 ];

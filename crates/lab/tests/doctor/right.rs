@@ -2,7 +2,7 @@
 
 use super::clips::{Clip, Delivered, Delivery, foveations};
 use super::planted::{contain_jitter, jitter, leave_out_camera};
-use afterimage::internal::{Filter, Foveation};
+use afterimage::internal::{Foveation, FoveationKind};
 use afterimage::{Gaze, Image};
 use afterimage_testing::Draws;
 
@@ -22,7 +22,10 @@ fn all_foveations() -> Vec<Foveation> {
     let mut all = foveations().to_vec();
     all.push(Foveation::quads());
     let default = Foveation::default();
-    all.extend([Filter::Mip, Filter::Block, Filter::Gauss, Filter::Off].map(|filter| Foveation { filter, ..default }));
+    all.extend(
+        [FoveationKind::Mip, FoveationKind::Block, FoveationKind::Gauss, FoveationKind::Off]
+            .map(|filter| Foveation { kind: filter, ..default }),
+    );
     all
 }
 
@@ -37,7 +40,7 @@ fn clips_under_every_filter() {
     for name in ["still", "lateral", "turn", "walk", "occluder", "light-step", "scroll"] {
         let clip = scene(&format!("analytic:{name}"));
         for foveation in in_turn.by_ref().take(3) {
-            let what = format!("{name}, {:?} {}/{}", foveation.filter, foveation.rate_mid, foveation.rate_far);
+            let what = format!("{name}, {:?} {}/{}", foveation.kind, foveation.rate_mid, foveation.rate_far);
             let mut delivery = Delivery::right(&clip, foveation);
             is_not_accused(&what, &delivery);
             // Vectors without the camera's motion, also in jittered frames.
@@ -63,12 +66,12 @@ fn gazes_everywhere() {
     for foveation in foveations() {
         for (what, px) in positions {
             let delivery = Delivery::looking(&clip, foveation, |_| px);
-            is_not_accused(&format!("gaze {what}, {:?}", foveation.filter), &delivery);
+            is_not_accused(&format!("gaze {what}, {:?}", foveation.kind), &delivery);
         }
         // Lost: the description does not say where the frame is sharp.
         let mut lost = Delivery::looking(&clip, foveation, |_| [0.5 * w - 0.5, 0.5 * h - 0.5]);
         lost.frames.iter_mut().for_each(|frame| frame.view.gaze = Gaze::Lost);
-        is_not_accused(&format!("gaze lost, {:?}", foveation.filter), &lost);
+        is_not_accused(&format!("gaze lost, {:?}", foveation.kind), &lost);
     }
 }
 
@@ -86,7 +89,7 @@ fn frames_that_show_nothing_or_nonsense() {
         let check = |what: &str, change: &mut dyn FnMut(usize, &mut Delivered)| {
             let mut changed = right.clone();
             changed.frames.iter_mut().enumerate().for_each(|(i, frame)| change(i, frame));
-            is_not_accused(&format!("{what}, {:?}", foveation.filter), &changed);
+            is_not_accused(&format!("{what}, {:?}", foveation.kind), &changed);
         };
         for (what, value) in [("gray", 0.18), ("black", 0.0), ("NaN", f32::NAN)] {
             check(what, &mut |_, f| f.color = Image::filled(clip.size(), [value; 3]));
@@ -102,10 +105,10 @@ fn frames_that_show_nothing_or_nonsense() {
         let mut contained = right.clone();
         contained.desc.motion.jittered = true;
         contain_jitter(&mut contained);
-        is_not_accused(&format!("jitter that the vectors contain as stated, {:?}", foveation.filter), &contained);
+        is_not_accused(&format!("jitter that the vectors contain as stated, {:?}", foveation.kind), &contained);
     }
     // Nothing but noise, described as full rate.
-    let mut noise = Delivery::right(&clip, Foveation { filter: Filter::Off, ..Foveation::default() });
+    let mut noise = Delivery::right(&clip, Foveation { kind: FoveationKind::Off, ..Foveation::default() });
     for frame in &mut noise.frames {
         frame.color = frame.color.map(|_| [0; 3].map(|_| draws.uniform()));
     }

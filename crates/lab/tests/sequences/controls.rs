@@ -3,14 +3,14 @@
 
 use super::rig::{Rig, View};
 use super::sequences::{SIZE, foveated, noisy, trust};
-use afterimage::internal::{ContextDesc, Filter, Foveation, Method, MethodKind, Reset, Sampler, Settings, Wrs};
+use afterimage::internal::{ContextDesc, Foveation, FoveationKind, Method, MethodKind, Reset, Sampler, Settings, Wrs};
 use afterimage::shader::SHADERS;
 use afterimage::{Exposure, Gaze, Image};
 use afterimage_lab::source::AnalyticSource;
 use afterimage_testing::planted;
 
-fn settings(method: impl Into<Method>, filter: Filter) -> Settings {
-    let foveation = Foveation { filter, rate_mid: 4, rate_far: 8, ..Foveation::default() };
+fn settings(method: impl Into<Method>, filter: FoveationKind) -> Settings {
+    let foveation = Foveation { kind: filter, rate_mid: 4, rate_far: 8, ..Foveation::default() };
     Settings { method: method.into(), foveation, ..Settings::paper() }
 }
 
@@ -47,11 +47,11 @@ fn all_caught(pass: &str, settings: Settings, has_lod: bool, errors: &[(&str, &s
 #[test]
 fn planted_errors_are_caught() {
     let of = |filter| settings(MethodKind::Smr, filter);
-    let keys = settings(Method::Wrs(Wrs { sampler: Sampler::AEs, ..Wrs::default() }), Filter::Mip);
-    let noisy = Settings { noisy: true, ..of(Filter::Mip) };
+    let keys = settings(Method::Wrs(Wrs { sampler: Sampler::AEs, ..Wrs::default() }), FoveationKind::Mip);
+    let noisy = Settings { noisy: true, ..of(FoveationKind::Mip) };
     all_caught(
         "wrs_pass",
-        settings(MethodKind::Wrs, Filter::Mip),
+        settings(MethodKind::Wrs, FoveationKind::Mip),
         false,
         &[
             ("f32(x) + motion.x", "f32(x) - motion.x"),
@@ -65,12 +65,12 @@ fn planted_errors_are_caught() {
     let lax = ("confidence = min(confidence, agreeing(near.", "confidence = max(confidence, agreeing(near.");
     for (pass, settings, has_lod, error) in [
         ("wrs_pass", keys, false, not_stored),
-        ("taa_pass", settings(MethodKind::Taa, Filter::Mip), false, wide),
-        ("taau_pass", settings(MethodKind::Taau, Filter::Mip), false, lax),
-        ("smr_pass", of(Filter::Mip), false, blind),
-        ("smr_pass", of(Filter::Block), false, ("let scale = select(1.0, 4.0, p.blocks);", "let scale = 1.0;")),
-        ("smr_pass", of(Filter::Gauss), false, ("if FILTER == FILTER_GAUSS {", "if false {")),
-        ("smr_pass", of(Filter::Mip), true, ("if HAS_LOD != 0u {", "if false {")),
+        ("taa_pass", settings(MethodKind::Taa, FoveationKind::Mip), false, wide),
+        ("taau_pass", settings(MethodKind::Taau, FoveationKind::Mip), false, lax),
+        ("smr_pass", of(FoveationKind::Mip), false, blind),
+        ("smr_pass", of(FoveationKind::Block), false, ("let scale = select(1.0, 4.0, p.blocks);", "let scale = 1.0;")),
+        ("smr_pass", of(FoveationKind::Gauss), false, ("if FILTER == FILTER_GAUSS {", "if false {")),
+        ("smr_pass", of(FoveationKind::Mip), true, ("if HAS_LOD != 0u {", "if false {")),
         ("smr_pass", noisy, false, ("const SIGMAS: f32 = 3.0;", "const SIGMAS: f32 = 2.0;")),
     ] {
         all_caught(pass, settings, has_lod, &[error]);

@@ -3,8 +3,8 @@
 
 use super::rig::{Rig, View, noise_view};
 use afterimage::internal::{
-    Bias, ContextDesc, Filter, Foveation, Gate, GateMetric, Method, MethodKind, Pyramid, Reset, Sampler, Settings, Smr,
-    ViewFrame, Wrs,
+    Bias, ContextDesc, Foveation, FoveationKind, Gate, GateMetric, Method, MethodKind, Pyramid, Reset, Sampler,
+    Settings, Smr, ViewFrame, Wrs,
 };
 use afterimage::{Exposure, Gaze, Image};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
@@ -83,7 +83,7 @@ fn agree(scene: &str, settings: Settings, change: impl Fn(u64, View, &mut Rig) -
     }
     println!("{settings:?}, {scene}: {kept} kept and {flushed} flushed pixels agree");
     // Where all is at full rate, history shows at broken pixels alone.
-    let is_shown = settings.method != Method::None && settings.foveation.filter != Filter::Off;
+    let is_shown = settings.method != Method::None && settings.foveation.kind != FoveationKind::Off;
     assert!(kept > 1000 || !is_shown, "history must play a part");
 }
 
@@ -143,7 +143,7 @@ fn every_variant_agrees_bit_for_bit() {
     let keyed = Wrs { sampler: Sampler::AEs, bias: Bias::Exponential { lambda: 0.02 }, gate: None, ..Wrs::default() };
     let unbiased = Wrs { bias: Bias::None, ..Wrs::default() };
     let smr = settings(MethodKind::Smr);
-    let with = |filter| Settings { foveation: Foveation { filter, ..smr.foveation }, ..smr };
+    let with = |filter| Settings { foveation: Foveation { kind: filter, ..smr.foveation }, ..smr };
     let tuned = Smr { accumulate: 0.98, tolerance: 0.3, relight: false, ..Smr::default() };
     let all = [
         base,
@@ -155,9 +155,9 @@ fn every_variant_agrees_bit_for_bit() {
         settings(MethodKind::Taa),
         settings(MethodKind::Taau),
         smr,
-        with(Filter::Gauss),
-        with(Filter::Off),
-        Settings { method: Method::Smr(tuned), ..with(Filter::Block) },
+        with(FoveationKind::Gauss),
+        with(FoveationKind::Off),
+        Settings { method: Method::Smr(tuned), ..with(FoveationKind::Block) },
     ];
     for (settings, scene) in all.into_iter().zip(["occluder", "lateral", "light-step"].into_iter().cycle()) {
         agree(scene, settings, |_, v, _| v);

@@ -2,26 +2,26 @@
 
 use super::sequences::{SIZE, settings};
 use afterimage::gpu::Afterimage;
-use afterimage::internal::{ContextDesc, Filter, Foveation, MethodKind, Settings};
+use afterimage::internal::{ContextDesc, Foveation, FoveationKind, MethodKind, Settings};
 use afterimage::wgpu::{self, TextureFormat};
 
 #[test]
 fn memory_bytes_is_what_is_made() {
     let Some((device, _)) = afterimage_testing::gpu::device() else { return };
     for (method, view_count, filter, size) in [
-        (MethodKind::Taa, 1, Filter::Mip, SIZE),
-        (MethodKind::Taau, 1, Filter::Mip, SIZE),
-        (MethodKind::Smr, 1, Filter::Mip, SIZE),
-        (MethodKind::Smr, 2, Filter::Block, SIZE),
-        (MethodKind::Smr, 1, Filter::Mip, [1, 1]),
+        (MethodKind::Taa, 1, FoveationKind::Mip, SIZE),
+        (MethodKind::Taau, 1, FoveationKind::Mip, SIZE),
+        (MethodKind::Smr, 1, FoveationKind::Mip, SIZE),
+        (MethodKind::Smr, 2, FoveationKind::Block, SIZE),
+        (MethodKind::Smr, 1, FoveationKind::Mip, [1, 1]),
     ] {
         let base = settings(method);
-        let settings = Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
+        let settings = Settings { foveation: Foveation { kind: filter, ..base.foveation }, ..base };
         let desc = ContextDesc { view_count, settings, ..ContextDesc::new(size) };
         let post = Afterimage::new(&device, &desc, TextureFormat::Rgba16Float).unwrap();
         // Two words a pixel, and four halves a texel of levels 1 to n, whose sides are padded so that halving never
         // rounds.
-        let levels = if method != MethodKind::Smr { 0 } else { 5 + u64::from(filter == Filter::Block) };
+        let levels = if method != MethodKind::Smr { 0 } else { 5 + u64::from(filter == FoveationKind::Block) };
         let padded = |len: u32| u64::from(len.div_ceil(2)).next_multiple_of(1 << (levels.max(1) - 1));
         let chain: u64 = (0..levels).map(|l| (padded(size[0]) >> l) * (padded(size[1]) >> l)).sum();
         let expected = 2 * 8 * u64::from(view_count) * (u64::from(size[0] * size[1]) + chain);

@@ -13,7 +13,7 @@ type Color = Image<[f32; 3]>;
 const VIEW: [u32; 2] = [256, 144];
 /// Wide, because the view is small: a full-rate disc of 24 pixels across among blocks of 4 and 8.
 const FOVEATION: Foveation = Foveation {
-    filter: afterimage::internal::Filter::Mip,
+    kind: afterimage::internal::FoveationKind::Mip,
     fovea_deg: 7.0,
     mid_deg: 20.0,
     blend_deg: 2.0,

@@ -1,6 +1,6 @@
 //! The law of smr: no crop of 64x64 pixels is visibly worse than in the foveated frame (H85).
 
-use afterimage::internal::{Filter, Foveation, Method, Settings, Smr};
+use afterimage::internal::{Foveation, FoveationKind, Method, Settings, Smr};
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{Crops, WorstCrop, encode};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
@@ -17,11 +17,11 @@ fn gaze(index: u64) -> [f32; 2] {
 }
 
 /// The worst crop on a scene of each run of smr: its foveation's filter and rates, and its settings.
-fn worst<const N: usize>(scene: &str, runs: [(Filter, [u32; 2], Smr); N]) -> [WorstCrop; N] {
+fn worst<const N: usize>(scene: &str, runs: [(FoveationKind, [u32; 2], Smr); N]) -> [WorstCrop; N] {
     let mut source = AnalyticSource::new(scene, SIZE, 70.0, 60.0).unwrap();
     let of = |method| RunKind::PostProcess(Settings { method, ..Settings::default() });
     let mut pipelines = runs.map(|(filter, [rate_mid, rate_far], smr)| {
-        let foveation = Foveation { filter, rate_mid, rate_far, ..Foveation::default() };
+        let foveation = Foveation { kind: filter, rate_mid, rate_far, ..Foveation::default() };
         let kinds = [of(Method::None), of(Method::Smr(smr))];
         Pipeline::new(*source.view(), foveation, &kinds, false, &[], &Backend::Cpu).unwrap()
     });
@@ -49,14 +49,14 @@ fn h85_no_crop_of_smr_is_visibly_worse_than_the_foveated_frame() {
             least = least.min(smr.delta_db);
         }
     };
-    let [a, b, c] = [[2, 4], [4, 8], [8, 16]].map(|rates| (Filter::Mip, rates, Smr::default()));
+    let [a, b, c] = [[2, 4], [4, 8], [8, 16]].map(|rates| (FoveationKind::Mip, rates, Smr::default()));
     for scene in ["still", "lateral", "turn", "walk", "light-step"] {
         holds(scene, &worst(scene, [a, b, c]));
     }
     // Point-sampled blocks: a sample of another surface, or of a highlight, is accumulated. Measured: see the row.
-    let blocks = (Filter::Block, [4, 8], Smr::default());
+    let blocks = (FoveationKind::Block, [4, 8], Smr::default());
     // The planted error: a gate that hardly ever closes.
-    let open = (Filter::Mip, [4, 8], Smr { tolerance: 10.0, ..Smr::default() });
+    let open = (FoveationKind::Mip, [4, 8], Smr { tolerance: 10.0, ..Smr::default() });
     let [mips @ .., blocks, open] = worst("spin", [a, b, c, blocks, open]);
     holds("spin", &mips);
     println!("spin, blocks: {blocks:?}; open gate: {open:?}");

@@ -17,7 +17,7 @@ mod classes;
 mod edges;
 mod rows;
 
-use afterimage::internal::{Filter, Foveation, Method, Settings, Smr, ViewFrame};
+use afterimage::internal::{Foveation, FoveationKind, Method, Settings, Smr, ViewFrame};
 use afterimage::kernel::depth::disparity;
 use afterimage::{DepthConvention, Gaze, Image, ViewGeometry};
 use afterimage_lab::device::Headless;
@@ -89,7 +89,7 @@ fn main() -> Result<(), Failure> {
     let (mut references, mut tracker) = (References::default().with_jod(viewing), Tracker::default());
     let coarse = Image::filled(size, 3.0);
     let smr = Method::Smr(Smr { antialias: true, ..Smr::default() });
-    let full_rate = Foveation { filter: Filter::Off, ..Foveation::default() };
+    let full_rate = Foveation { kind: FoveationKind::Off, ..Foveation::default() };
     let mut baselines = [
         Post::new("full rate, taa", Method::Taa, full_rate, size)?,
         Post::new("full rate, taau", Method::Taau, full_rate, size)?,

@@ -6,7 +6,7 @@ use crate::edges::{Edges, Pictures};
 use afterimage::Image;
 use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
 use afterimage::internal::PixelNotes;
-use afterimage::internal::{ContextDesc, Filter, Foveation, Method, Reset, Settings, ViewFrame};
+use afterimage::internal::{ContextDesc, Foveation, FoveationKind, Method, Reset, Settings, ViewFrame};
 use afterimage_eval::clip::pixel::ExplainedPixel;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::{Reference, Scorer, Tracked, encode};
@@ -73,7 +73,7 @@ impl Post {
             return Ok(());
         }
         self.before = self.post.clone();
-        if self.post.desc().settings.foveation.filter == Filter::Quads {
+        if self.post.desc().settings.foveation.kind == FoveationKind::Quads {
             self.decided.shaded = self.post.plan(&input)?[0].clone();
         }
         self.post.process_traced(&input, &mut shown, &mut traces)?;

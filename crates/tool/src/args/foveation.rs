@@ -3,7 +3,7 @@
 use super::number::{parse_percent, parse_scale};
 use super::{Named, by_name};
 use crate::failure::Failure;
-use afterimage::internal::{Filter, Foveation, Method, Settings};
+use afterimage::internal::{Foveation, FoveationKind, Method, Settings};
 use afterimage_lab::quad_views::{Geometry, QuadViewLayout};
 use clap::builder::TypedValueParser;
 use clap::error::ErrorKind;
@@ -86,10 +86,10 @@ impl FoveationArgs {
     /// Fills in defaults that depend on the input. `default`: how its frames are foveated by default. `is_traced`:
     /// whether they are those of a path-traced scene.
     #[must_use]
-    pub fn with_defaults(self, default: Filter, is_traced: bool) -> Self {
-        if self.is_jittered() && self.filter() == FilterName::Of(Filter::Off) {
+    pub fn with_defaults(self, default: FoveationKind, is_traced: bool) -> Self {
+        if self.is_jittered() && self.filter() == FilterName::Of(FoveationKind::Off) {
             let rates = Self { rate_mid: Some(2), rate_far: Some(2), ..self };
-            let filter = Some(FilterName::Of(Filter::Quads));
+            let filter = Some(FilterName::Of(FoveationKind::Quads));
             return Self { filter, fovea: 180.0, mid: 180.0, budget: Some(0.0), ..rates };
         }
         let named = Self { filter: Some(self.filter.unwrap_or(FilterName::Of(default))), ..self };
@@ -98,7 +98,7 @@ impl FoveationArgs {
 
     /// How frames are foveated.
     pub fn filter(&self) -> FilterName {
-        self.filter.unwrap_or(FilterName::Of(Filter::Mip))
+        self.filter.unwrap_or(FilterName::Of(FoveationKind::Mip))
     }
 
     /// Whether the projection is jittered.
@@ -109,7 +109,7 @@ impl FoveationArgs {
     /// The settings, with history that is antialiased where frames are jittered.
     pub fn antialiased(&self, mut settings: Settings) -> Settings {
         if let Method::Smr(smr) = &mut settings.method {
-            smr.antialias = self.is_jittered() && settings.foveation.filter == Filter::Quads;
+            smr.antialias = self.is_jittered() && settings.foveation.kind == FoveationKind::Quads;
         }
         settings
     }
@@ -132,10 +132,10 @@ impl FoveationArgs {
         }
         let [rate_mid, rate_far] = self.rates();
         Foveation {
-            filter: match self.filter() {
+            kind: match self.filter() {
                 FilterName::Of(filter) => filter,
                 // Of quad views, levels of detail are an input.
-                FilterName::Layers | FilterName::Uniform => Filter::Mip,
+                FilterName::Layers | FilterName::Uniform => FoveationKind::Mip,
             },
             fovea_deg: self.fovea,
             mid_deg: self.mid,
@@ -159,7 +159,7 @@ impl FoveationArgs {
 
     /// Whether frames are shaded by quads that methods choose.
     pub fn is_quads(&self) -> bool {
-        self.filter() == FilterName::Of(Filter::Quads)
+        self.filter() == FilterName::Of(FoveationKind::Quads)
     }
 
     /// Side of a pixel of uniform frames, in pixels.
@@ -232,7 +232,7 @@ impl FoveationArgs {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FilterName {
     /// A filter of the library.
-    Of(Filter),
+    Of(FoveationKind),
     /// Views of the regions.
     Layers,
     /// The whole frame at a lower resolution.
@@ -247,13 +247,14 @@ impl FilterName {
 }
 
 /// Name of a filter here.
-fn named(filter: Filter) -> &'static str {
-    if filter == Filter::Quads { "planned" } else { filter.name() }
+fn named(filter: FoveationKind) -> &'static str {
+    if filter == FoveationKind::Quads { "planned" } else { filter.name() }
 }
 
 impl Named for FilterName {
     fn rows() -> Vec<(Self, &'static str, &'static str)> {
-        let mut rows: Vec<_> = Filter::ALL.map(|filter| (Self::Of(filter), named(filter), filter.summary())).into();
+        let mut rows: Vec<_> =
+            FoveationKind::ALL.map(|filter| (Self::Of(filter), named(filter), filter.summary())).into();
         let off = rows.pop();
         rows.extend([
             (
@@ -299,7 +300,7 @@ impl TypedValueParser for FilterParser {
                         one pixel of a quad\n";
             return Err(Error::raw(ErrorKind::InvalidValue, text).with_cmd(command));
         }
-        let value = if value == QUADS { OsStr::new(named(Filter::Quads)) } else { value };
+        let value = if value == QUADS { OsStr::new(named(FoveationKind::Quads)) } else { value };
         by_name::<FilterName>().parse_ref(command, arg, value)
     }
 

@@ -37,7 +37,7 @@ pub fn as_rust(settings: &Settings) -> String {
 
 fn foveation(foveation: &Foveation) -> String {
     Literal::new("Foveation", foveation, &Foveation::default())
-        .field("filter", |f| format!("Filter::{:?}", f.filter))
+        .field("filter", |f| format!("Filter::{:?}", f.kind))
         .field("fovea_deg", |f| format!("{:?}", f.fovea_deg))
         .field("mid_deg", |f| format!("{:?}", f.mid_deg))
         .field("blend_deg", |f| format!("{:?}", f.blend_deg))
@@ -109,7 +109,7 @@ impl<'a, T> Literal<'a, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use afterimage::internal::{DepthTest, Filter, Gate, GateMetric, GateScale, Sampler};
+    use afterimage::internal::{DepthTest, FoveationKind, Gate, GateMetric, GateScale, Sampler};
 
     /// Checks that the text of the settings is the macro's argument, which compiles.
     macro_rules! round_trip {
@@ -140,7 +140,7 @@ mod tests {
                 }),
                 ..Wrs::default()
             }),
-            foveation: Foveation { filter: Filter::Block, fovea_deg: 10.0, rate_far: 32, ..Foveation::default() },
+            foveation: Foveation { kind: FoveationKind::Block, fovea_deg: 10.0, rate_far: 32, ..Foveation::default() },
             depth_test: Some(DepthTest { relative: 0.1, slope_px: 0.0 }),
             noisy: true,
             ..Settings::default()

@@ -6,8 +6,8 @@ mod sound_scene;
 
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::internal::{
-    Bias, ContextDesc, DepthTest, Filter, Foveation, Gate, GateMetric, GateScale, Method, Reset, Sampler, Settings,
-    Smr, ViewFrame, Wrs,
+    Bias, ContextDesc, DepthTest, Foveation, FoveationKind, Gate, GateMetric, GateScale, Method, Reset, Sampler,
+    Settings, Smr, ViewFrame, Wrs,
 };
 use afterimage::{DepthConvention, Exposure, Gaze, Image, ViewGeometry};
 use afterimage_cli::sweep::Plan;
@@ -210,7 +210,8 @@ impl Bits<'_> {
     fn settings(&mut self) -> Settings {
         let pick = self.word();
         let foveation = Foveation {
-            filter: [Filter::Mip, Filter::Gauss, Filter::Block, Filter::Off][(pick >> 2 & 3) as usize],
+            filter: [FoveationKind::Mip, FoveationKind::Gauss, FoveationKind::Block, FoveationKind::Off]
+                [(pick >> 2 & 3) as usize],
             fovea_deg: self.around(0.0, 20.0),
             mid_deg: self.around(20.0, 60.0),
             blend_deg: self.around(0.0, 10.0),

@@ -20,7 +20,7 @@ use crate::Tracer;
 use crate::film::Film;
 use crate::work::Spans;
 use crate::world::World;
-use afterimage::internal::{Filter, Foveation};
+use afterimage::internal::{Foveation, FoveationKind};
 use afterimage::{Image, ViewGeometry};
 use afterimage_lab::frame::FoveatedFrame;
 use afterimage_lab::view::View;
@@ -74,7 +74,7 @@ impl Sampling {
             ..Foveation::default()
         };
         match self {
-            Self::Uniform => Foveation { filter: Filter::Off, rate_mid: 1, rate_far: 1, ..Foveation::default() },
+            Self::Uniform => Foveation { kind: FoveationKind::Off, rate_mid: 1, rate_far: 1, ..Foveation::default() },
             Self::Regions(r) => {
                 let [fovea, mid] = r.diameters_deg.map(|d| d * r.radius_scale);
                 of(fovea, mid, r.blocks.map(|b| b as f32))

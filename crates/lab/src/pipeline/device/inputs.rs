@@ -255,7 +255,7 @@ impl DeviceInputs {
         views: &[ViewFrame],
         timestamps: Option<Timestamps<'_>>,
     ) -> Result<(), FrameError> {
-        let lod = needs_lod(self.simulator.desc().settings.foveation.filter).then_some(&self.lod);
+        let lod = needs_lod(self.simulator.desc().settings.foveation.kind).then_some(&self.lod);
         let frame = SimulatorFrame { lod, timestamps, ..SimulatorFrame::new(&self.full, &self.foveated, views) };
         self.simulator.record(&self.gpu.device, encoder, &frame)?;
         self.given = Given { lod: lod.cloned(), ..self.given.clone() };

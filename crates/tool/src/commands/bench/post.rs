@@ -4,7 +4,7 @@ use super::BenchArgs;
 use crate::failure::Failure;
 use crate::output::write_json;
 use afterimage::internal::{
-    ContextDesc, Filter, Foveation, GpuSimulator, MethodKind, Reset, Settings, SimulatorFrame, ViewFrame,
+    ContextDesc, Foveation, FoveationKind, GpuSimulator, MethodKind, Reset, Settings, SimulatorFrame, ViewFrame,
 };
 use afterimage::kernel::rng;
 use afterimage::module;
@@ -68,7 +68,7 @@ enum PassKind {
     Post(Settings),
     /// A method on planned frames, with their plan.
     Planned(Settings),
-    Foveate(Filter),
+    Foveate(FoveationKind),
 }
 
 impl PassSpec {
@@ -92,7 +92,7 @@ fn all_passes() -> Vec<PassSpec> {
     passes.push(PassSpec::planned("smr-screen", screen));
     let everywhere = Settings { foveation: Foveation::uniform(0.25), ..screen };
     passes.push(PassSpec::planned("smr-everywhere", everywhere));
-    passes.extend(Filter::ALL.into_iter().filter_map(|filter| {
+    passes.extend(FoveationKind::ALL.into_iter().filter_map(|filter| {
         let bytes_per_pixel = simulator_traffic(filter)?;
         Some(PassSpec { name: filter.name(), bytes_per_pixel, kind: PassKind::Foveate(filter) })
     }));
@@ -101,11 +101,11 @@ fn all_passes() -> Vec<PassSpec> {
 
 /// Bytes of memory traffic a pixel of a filter's passes, to outputs of halves and without levels of detail. `None`:
 /// full-rate frames are copied.
-fn simulator_traffic(filter: Filter) -> Option<u32> {
+fn simulator_traffic(filter: FoveationKind) -> Option<u32> {
     match filter {
-        Filter::Mip => Some(27),
-        Filter::Gauss => Some(48),
-        Filter::Block => Some(25),
+        FoveationKind::Mip => Some(27),
+        FoveationKind::Gauss => Some(48),
+        FoveationKind::Block => Some(25),
         _ => None,
     }
 }
@@ -129,7 +129,7 @@ impl CreatedPass {
                 Self::Post(Box::new(DeviceRun::new(gpu, &desc, DeviceFormats::ENGINE)?))
             }
             PassKind::Foveate(filter) => {
-                desc.settings.foveation.filter = filter;
+                desc.settings.foveation.kind = filter;
                 let format = DeviceFormats::ENGINE.color;
                 Self::Foveate {
                     simulator: Box::new(GpuSimulator::new(&gpu.device, &desc, format)?),
@@ -256,7 +256,7 @@ fn time(
         CreatedPass::Post(run) => {
             let frame = inputs.frame(views, index, Reset::None, false);
             clock.begin(&mut encoder);
-            if run.post().desc().settings.foveation.filter == Filter::Quads {
+            if run.post().desc().settings.foveation.kind == FoveationKind::Quads {
                 // Its pixels are those of a frame that is there already.
                 run.post_mut().plan(&gpu.device, &mut encoder, &frame)?;
             }

@@ -9,7 +9,7 @@ mod scene;
 use crate::args::channels::ChannelArgs;
 use crate::args::gaze_log::GazeLogArgs;
 use crate::failure::{Failure, with_options};
-use afterimage::internal::{ContextDesc, Filter, Reset, ViewFrame};
+use afterimage::internal::{ContextDesc, FoveationKind, Reset, ViewFrame};
 use afterimage::{Gaze, ViewGeometry, cpu};
 use afterimage_eval::exposure::Exposure;
 use afterimage_lab::error::InputError;
@@ -149,7 +149,7 @@ fn inputs_look(source: &mut dyn FrameSource, reader: &Reader, found: Option<Moti
         return Ok(());
     }
     let mut desc = ContextDesc::new(info.size);
-    desc.settings.foveation.filter = Filter::Off;
+    desc.settings.foveation.kind = FoveationKind::Off;
     let geometry = ViewGeometry::flat(info.size, info.hfov_deg.unwrap_or(70.0))?;
     let mut doctor = cpu::Doctor::new(&desc, 0)?;
     for index in 0..EXAMINED.min(info.frames.unwrap_or(EXAMINED)) {

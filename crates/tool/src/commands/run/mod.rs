@@ -22,7 +22,7 @@ use crate::progress;
 use crate::report::cameras::cameras_json;
 use crate::video::SideBySide;
 use afterimage::DebugView;
-use afterimage::internal::{Filter, MethodKind};
+use afterimage::internal::{FoveationKind, MethodKind};
 use afterimage_eval::exposure::Exposure;
 use afterimage_eval::metric;
 use afterimage_lab::device::Backend;
@@ -172,8 +172,8 @@ impl RunArgs {
     pub fn with_defaults(self) -> Self {
         let is_scene = self.input.is_scene();
         let default = match is_scene && self.sampling.sampling == SamplingName::Uniform {
-            true => Filter::Quads,
-            false => Filter::Mip,
+            true => FoveationKind::Quads,
+            false => FoveationKind::Mip,
         };
         let is_traced = is_scene && !self.input.is_rasterised();
         let mut args = Self { foveation: self.foveation.with_defaults(default, is_traced), ..self };
@@ -219,9 +219,8 @@ impl RunArgs {
         let is_traced = self.input.source == Some(SourceName::Trace);
         if self.sampling.sampling == SamplingName::Uniform {
             // Frames without foveation: their error is noise alone.
-            return Ok(
-                (is_traced && self.foveation.filter() == FilterName::Of(Filter::Off)).then_some(Sampling::Uniform)
-            );
+            return Ok((is_traced && self.foveation.filter() == FilterName::Of(FoveationKind::Off))
+                .then_some(Sampling::Uniform));
         }
         if !is_traced {
             return Err(Failure::Input(format!(

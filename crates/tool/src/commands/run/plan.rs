@@ -8,7 +8,7 @@ use crate::args::{MethodName, Named};
 use crate::clip::pixel::ExplainedPixel;
 use crate::clip::{self, Clip, title};
 use crate::failure::Failure;
-use afterimage::internal::{Filter, Foveation, Method, MethodKind, Settings};
+use afterimage::internal::{Foveation, FoveationKind, Method, MethodKind, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::pipeline::RunKind;
 use afterimage_lab::quad_views::QuadViewLayout;
@@ -162,7 +162,7 @@ pub fn run_kind(args: &RunArgs, method: MethodName, info: &SourceInfo) -> Result
         }
         MethodName::Post(method) => method,
         MethodName::Oracle if sampling.is_some() => return refuse("needs simulated foveation; leave out --sampling"),
-        MethodName::Oracle if foveation.filter == Filter::Quads => {
+        MethodName::Oracle if foveation.kind == FoveationKind::Quads => {
             return refuse("is not defined for moving samples; use another --foveation, or leave it out");
         }
         MethodName::Oracle if info.still => return Ok(RunKind::Oracle),
@@ -174,7 +174,7 @@ pub fn run_kind(args: &RunArgs, method: MethodName, info: &SourceInfo) -> Result
     let is_noisy = sampling.is_some() || args.is_traced_by_plan();
     let settings = Settings { foveation, ..args.method_settings.settings(method, args.seed, is_noisy) };
     let mut settings = args.foveation.antialiased(settings);
-    let is_planned = settings.foveation.filter == Filter::Quads;
+    let is_planned = settings.foveation.kind == FoveationKind::Quads;
     let kind = match &mut settings.method {
         Method::Smr(smr) if is_planned && args.takes_albedo(info.has_albedo) => {
             // History holds means, to which albedos belong, even of frames without jitter.

@@ -5,15 +5,15 @@ use crate::clip::ClipReport;
 use crate::output::{Output, WriteError};
 use crate::report::frame_plot::{FramePlot, Quantity, Series};
 use crate::report::plot::png;
-use afterimage::internal::Filter;
+use afterimage::internal::FoveationKind;
 use afterimage_lab::quad_views::QuadViewLayout;
 use std::path::Path;
 
 /// Writes the plot. `simulator` names what foveates the frames.
 pub fn write(plan: &Plan, simulator: &str, report: &ClipReport, out: &Output) -> Result<(), WriteError> {
     let foveation = plan.clip.foveation;
-    let foveation = match foveation.filter {
-        Filter::Off => "full rate".into(),
+    let foveation = match foveation.kind {
+        FoveationKind::Off => "full rate".into(),
         _ if let Some(QuadViewLayout::Uniform { step }) = plan.clip.quad_views => format!("uniform 1/{step}"),
         _ => format!("{simulator} {} and {}", foveation.rate_mid, foveation.rate_far),
     };

@@ -6,7 +6,7 @@ use crate::args::{FilterName, MethodName};
 use crate::commands::run::RunArgs;
 use crate::failure::Failure;
 use crate::sweep::{Options, Point};
-use afterimage::internal::{Filter, MethodKind};
+use afterimage::internal::{FoveationKind, MethodKind};
 use std::collections::BTreeMap;
 
 /// Limit on points per batch: an interrupted sweep loses at most one batch.
@@ -75,7 +75,7 @@ impl Planned {
     /// Samples per pixel of a full-rate frame with the fovea's quality; 1 if a simulator foveates.
     pub fn full_rate_samples(&self) -> u32 {
         match self.args.sampling.sampling {
-            SamplingName::Uniform if self.args.foveation.filter() != FilterName::Of(Filter::Off) => 1,
+            SamplingName::Uniform if self.args.foveation.filter() != FilterName::Of(FoveationKind::Off) => 1,
             _ => self.args.sampling.most_samples(self.args.input.spp),
         }
     }

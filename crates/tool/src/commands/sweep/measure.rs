@@ -14,7 +14,7 @@ use crate::sweep::rust_source::as_rust;
 use crate::sweep::store::{PICTURES, id};
 use crate::sweep::{Measurement, Options, Store};
 use afterimage::Image;
-use afterimage::internal::{Filter, Method, MethodKind, Settings};
+use afterimage::internal::{FoveationKind, Method, MethodKind, Settings};
 use afterimage::kernel::debug_view::heat;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::device::{Backend, PassClock, copy_ms_per_byte};
@@ -179,7 +179,7 @@ fn samples_share(result: &FrameResult<'_>, clip: &Clip, subject: &Planned) -> f6
     let lods = result.step.lods.pixels();
     match result.frame.samples {
         Some(samples) => samples as f64 / (lods.len() as f64 * f64::from(subject.full_rate_samples())),
-        None if clip.foveation.filter == Filter::Off => 1.0,
+        None if clip.foveation.kind == FoveationKind::Off => 1.0,
         None => lods.iter().map(|lod| f64::from((-2.0 * lod).exp2())).sum::<f64>() / lods.len() as f64,
     }
 }

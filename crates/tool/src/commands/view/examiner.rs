@@ -82,7 +82,7 @@ impl Examiner {
 mod tests {
     use super::*;
     use afterimage::doctor::Fault;
-    use afterimage::internal::{Filter, ViewFrame};
+    use afterimage::internal::{FoveationKind, ViewFrame};
     use afterimage::{Gaze, Image, ViewGeometry};
     use wgpu::{TextureFormat, TextureUsages};
 
@@ -96,7 +96,7 @@ mod tests {
         let [color, motion] = [(); 2].map(|()| gpu.texture(SIZE, 1, TextureFormat::Rgba32Float, usage));
         gpu.write_rgb(&motion, 0, &Image::filled(SIZE, [2.0, 0.0, 0.0]));
         let mut desc = ContextDesc::new(SIZE);
-        desc.settings.foveation.filter = Filter::Off;
+        desc.settings.foveation.kind = FoveationKind::Off;
         let mut examiner = Examiner::new(&gpu, &desc).unwrap();
         let views = [ViewFrame::new(ViewGeometry::flat(SIZE, 70.0).unwrap(), Gaze::At { px: [40.0, 30.0] })];
         for index in 0..12 {

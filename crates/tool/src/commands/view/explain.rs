@@ -4,7 +4,7 @@ use super::ViewArgs;
 use super::state::{Shows, Side, State};
 use crate::args::gaze_log::GazeLogArgs;
 use crate::args::{FilterName, Named};
-use afterimage::internal::Filter;
+use afterimage::internal::FoveationKind;
 use clap::{Args, Command};
 use std::path::Path;
 
@@ -89,7 +89,7 @@ impl Repeatable {
         }
         let of_log = GazeLogArgs::augment_args(Command::new("log"));
         let of_log: Vec<_> = of_log.get_arguments().filter_map(|arg| arg.get_long()).collect();
-        let has_quads = |filter: FilterName| filter == FilterName::Of(Filter::Quads);
+        let has_quads = |filter: FilterName| filter == FilterName::Of(FoveationKind::Quads);
         let is_dropped = |name: &str| {
             REPLACED.contains(&name)
                 || (!self.is_played && (OF_GAZE.contains(&name) || of_log.contains(&name)))

@@ -2,7 +2,7 @@
 
 use super::state::{Action, Shows, Side, State};
 use crate::args::{FilterName, Named};
-use afterimage::internal::Filter;
+use afterimage::internal::FoveationKind;
 use winit::keyboard::KeyCode;
 
 /// Keys that have to be held. A key without any may be pressed together with Shift.
@@ -110,7 +110,7 @@ fn on_off(is_on: bool) -> Option<String> {
 
 fn rendered(state: &State) -> Option<String> {
     let value = match state.filter {
-        FilterName::Of(Filter::Quads) => "chosen quads",
+        FilterName::Of(FoveationKind::Quads) => "chosen quads",
         filter if filter.is_quad_views() => "quad views",
         _ => "full rate",
     };

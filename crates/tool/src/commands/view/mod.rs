@@ -35,7 +35,7 @@ use crate::args::gaze_log::GazeLogArgs;
 use crate::args::input::{InputArgs, Rendering};
 use crate::args::{FoveationArgs, MethodArgs, by_name, parse_frames, parse_stops};
 use crate::failure::Failure;
-use afterimage::internal::Filter;
+use afterimage::internal::FoveationKind;
 use afterimage_lab::scanpath::GazeMap;
 use app::App;
 use clap::Args;
@@ -112,7 +112,7 @@ pub struct ViewArgs {
 /// The subcommand.
 pub fn view(args: &ViewArgs) -> Result<(), Failure> {
     let is_rendered = args.input.is_rasterised();
-    let default = if is_rendered { Filter::Quads } else { Filter::Mip };
+    let default = if is_rendered { FoveationKind::Quads } else { FoveationKind::Mip };
     let foveation = args.foveation.clone().with_defaults(default, false);
     let args = &ViewArgs { foveation, ..args.clone() };
     let (setup, frames) = if args.input.is_rasterised() {

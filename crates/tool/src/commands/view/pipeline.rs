@@ -9,7 +9,7 @@ use super::times::{Pass, PassTimes};
 use crate::failure::Failure;
 use afterimage::doctor::Finding;
 use afterimage::gpu::Frame;
-use afterimage::internal::{ContextDesc, Filter, Foveation, MethodKind, Reset, Settings, ViewFrame};
+use afterimage::internal::{ContextDesc, Foveation, FoveationKind, MethodKind, Reset, Settings, ViewFrame};
 use afterimage::wgpu::{CommandEncoder, Texture};
 use afterimage::{Gaze, ViewGeometry};
 use afterimage_lab::device::Headless;
@@ -180,7 +180,7 @@ impl ViewPipeline {
         mut renderer: Option<&mut RasterSource>,
         times: &mut PassTimes,
     ) -> Result<(), Failure> {
-        let by_quads = self.desc.settings.foveation.filter == Filter::Quads;
+        let by_quads = self.desc.settings.foveation.kind == FoveationKind::Quads;
         // Rendered frames are shown again only after a reset of the history, which needs no motion.
         let again = again && renderer.is_none();
         let rendered = renderer.as_deref_mut().map(|renderer| self.render(renderer, gaze_px, state, times));
@@ -257,7 +257,7 @@ impl ViewPipeline {
             .quad_views
             .map(|layout| Wanted::QuadViews(layout.views(&self.desc.settings.foveation, &self.geometry, gaze_px)));
         // As in run: the sequence starts with a corner of the pixel.
-        let by_quads = self.desc.settings.foveation.filter == Filter::Quads;
+        let by_quads = self.desc.settings.foveation.kind == FoveationKind::Quads;
         let jitter_px = (self.is_jittered && by_quads).then(|| Foveation::jitter_px(self.index + 1));
         let otherwise = if by_quads { Wanted::Surfaces } else { Wanted::FullRate };
         let wanted = quad_views.unwrap_or(otherwise);

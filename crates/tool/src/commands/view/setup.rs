@@ -8,7 +8,7 @@ use crate::args::input;
 use crate::args::{FilterName, FoveationArgs};
 use crate::failure::Failure;
 use afterimage::ViewGeometry;
-use afterimage::internal::{Filter, MethodKind, Settings};
+use afterimage::internal::{FoveationKind, MethodKind, Settings};
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::scanpath::HeadPath;
 use afterimage_lab::source::SourceInfo;
@@ -59,7 +59,7 @@ impl Setup {
             setup.settings(&state, state.sides[side as usize]).validate()?;
         }
         // Keys lead to the other methods and filters.
-        state.filter = FilterName::Of(Filter::Mip);
+        state.filter = FilterName::Of(FoveationKind::Mip);
         for method in MethodKind::ALL {
             setup.settings(&state, Shows::Post(method)).validate()?;
         }

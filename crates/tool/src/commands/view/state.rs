@@ -2,7 +2,7 @@
 
 use crate::args::{FilterName, Named};
 use afterimage::DebugView;
-use afterimage::internal::{Filter, MethodKind};
+use afterimage::internal::{FoveationKind, MethodKind};
 
 /// What a side of the picture shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -152,9 +152,9 @@ impl State {
             Action::Render if !self.is_rasterised => return Effect::Nothing,
             Action::Render => {
                 self.filter = match self.filter {
-                    FilterName::Of(Filter::Quads) => FilterName::Layers,
-                    FilterName::Layers => FilterName::Of(Filter::Off),
-                    _ => FilterName::Of(Filter::Quads),
+                    FilterName::Of(FoveationKind::Quads) => FilterName::Layers,
+                    FilterName::Layers => FilterName::Of(FoveationKind::Off),
+                    _ => FilterName::Of(FoveationKind::Quads),
                 };
                 return Effect::Update;
             }
@@ -224,7 +224,7 @@ pub(super) mod tests {
             sides: [Shows::Post(MethodKind::Smr), Shows::Reference],
             is_split: false,
             divider: 0.5,
-            filter: FilterName::Of(Filter::Mip),
+            filter: FilterName::Of(FoveationKind::Mip),
             is_rasterised: false,
             fovea_deg: 5.0,
             mid_deg: 15.0,
@@ -279,7 +279,7 @@ pub(super) mod tests {
     fn scenes_are_rendered_as_quads_as_quad_views_or_at_full_rate() {
         let mut state = state();
         assert_eq!(press(&mut state, KeyCode::KeyT, false), Effect::Nothing, "nothing is rendered");
-        assert_eq!(state.filter, FilterName::Of(Filter::Mip));
+        assert_eq!(state.filter, FilterName::Of(FoveationKind::Mip));
         state.is_rasterised = true;
         let rendered: Vec<_> =
             (0..4).map(|_| (press(&mut state, KeyCode::KeyT, false), state.filter.name()).1).collect();
