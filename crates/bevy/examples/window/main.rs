@@ -12,6 +12,7 @@ mod props;
 
 use bevy::anti_alias::taa::TemporalAntiAliasing;
 use bevy::diagnostic::{DiagnosticsStore, FrameTimeDiagnosticsPlugin};
+use bevy::pbr::ScreenSpaceTransmission;
 use bevy::prelude::*;
 use bevy::render::camera::TemporalJitter;
 use bevy::render::diagnostic::RenderDiagnosticsPlugin;
@@ -30,7 +31,8 @@ fn main() {
         .add_plugins((FrameTimeDiagnosticsPlugin::default(), ScenePlugin { lamps: 16, moves: true }, PropsPlugin))
         .add_systems(Startup, |mut commands: Commands| {
             let foveated = (Afterimage::default(), Foveated::uniform(0.25));
-            let camera = commands.spawn((Camera3d::default(), foveated, TONEMAPPING, stroll(1.5))).id();
+            let camera = (Camera3d::default(), ScreenSpaceTransmission::default(), TONEMAPPING, stroll(1.5));
+            let camera = commands.spawn(camera).insert(foveated).id();
             commands.insert_resource(Held { by: camera });
         })
         .init_resource::<Mode>()
