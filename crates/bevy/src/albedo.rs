@@ -3,14 +3,13 @@
 
 use crate::context::ALBEDO_FORMAT;
 use crate::frame::ExtractedAfterimage;
-use crate::pass::{Contexts, ShowQuads, plan};
+use crate::pass::{Contexts, ShowQuads, plan, timed};
 use bevy::asset::{embedded_asset, load_embedded_asset};
 use bevy::core_pipeline::Core3dSystems;
 use bevy::core_pipeline::prepass::ViewPrepassTextures;
 use bevy::core_pipeline::schedule::Core3d;
 use bevy::pbr::deferred::DEFAULT_PBR_DEFERRED_LIGHTING_PASS_ID;
 use bevy::prelude::*;
-use bevy::render::diagnostic::RecordDiagnostics;
 use bevy::render::render_resource::binding_types::{texture_2d, texture_depth_2d, texture_storage_2d, uniform_buffer};
 use bevy::render::render_resource::{
     BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedComputePipelineId,
@@ -20,17 +19,13 @@ use bevy::render::renderer::{RenderContext, ViewQuery};
 use bevy::render::view::{ViewUniform, ViewUniformOffset, ViewUniforms};
 use bevy::render::{GpuResourceAppExt, Render, RenderApp, RenderSystems};
 
-pub(crate) struct AlbedoPlugin;
-
-impl Plugin for AlbedoPlugin {
-    fn build(&self, app: &mut App) {
-        embedded_asset!(app, "albedo.wesl");
-        if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
-            render_app
-                .init_gpu_resource::<AlbedoPass>()
-                .add_systems(Render, queue.in_set(RenderSystems::Prepare))
-                .add_systems(Core3d, record.after(plan).before(Core3dSystems::MainPass).before(ShowQuads));
-        }
+pub(crate) fn plugin(app: &mut App) {
+    embedded_asset!(app, "albedo.wesl");
+    if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+        render_app
+            .init_gpu_resource::<AlbedoPass>()
+            .add_systems(Render, queue.in_set(RenderSystems::Prepare))
+            .add_systems(Core3d, record.after(plan).before(Core3dSystems::MainPass).before(ShowQuads));
     }
 }
 
@@ -100,14 +95,10 @@ fn record(
         &cache.get_bind_group_layout(&pass.layout),
         &BindGroupEntries::sequential((uniforms, depth, gbuffer, &lighting.texture.default_view, &output)),
     );
-    let diagnostics = ctx.diagnostic_recorder();
-    let diagnostics = diagnostics.as_deref();
-    let encoder = ctx.command_encoder();
-    let span = diagnostics.time_span(encoder, "afterimage_albedo");
-    let mut compute = encoder.begin_compute_pass(&Default::default());
-    compute.set_pipeline(pipeline);
-    compute.set_bind_group(0, &group, &[uniform.offset]);
-    compute.dispatch_workgroups(albedo.width().div_ceil(8), albedo.height().div_ceil(8), 1);
-    drop(compute);
-    span.end(encoder);
+    timed(&mut ctx, "afterimage_albedo", |_, encoder| {
+        let mut compute = encoder.begin_compute_pass(&Default::default());
+        compute.set_pipeline(pipeline);
+        compute.set_bind_group(0, &group, &[uniform.offset]);
+        compute.dispatch_workgroups(albedo.width().div_ceil(8), albedo.height().div_ceil(8), 1);
+    });
 }

@@ -2,7 +2,7 @@
 //! measured times.
 
 use crate::components::{Afterimage, Foveated, FoveationKind};
-use crate::layers::LayersFound;
+use crate::layers::find_layers;
 use afterimage::{SettingsError, ShareControl};
 use bevy::anti_alias::taa::TemporalAntiAliasing;
 use bevy::diagnostic::{Diagnostic, DiagnosticMeasurement, DiagnosticsStore};
@@ -116,12 +116,8 @@ impl Auto {
     }
 }
 
-pub(crate) struct AutoPlugin;
-
-impl Plugin for AutoPlugin {
-    fn build(&self, app: &mut App) {
-        app.add_systems(PostUpdate, (control, stand_in).chain().before(LayersFound));
-    }
+pub(crate) fn plugin(app: &mut App) {
+    app.add_systems(PostUpdate, (control, stand_in).chain().before(find_layers));
 }
 
 /// Time that the device worked on the passes of a frame, from Bevy's `RenderDiagnosticsPlugin`: 0 if none has arrived
@@ -152,21 +148,17 @@ fn control(
     let measured_ms = device_ms.unwrap_or(1e3 * time.delta_secs());
     for (camera, mut foveated, auto) in &mut cameras {
         let Some(target_ms) = foveated.target_fps.map(|fps| 1e3 / fps) else { continue };
-        match auto {
-            Some(mut auto) if auto.target_ms == target_ms => {
-                let chosen =
-                    auto.share_for(measured_ms).map_or(Foveated { kind: FoveationKind::Off, ..*foveated }, |share| {
-                        Foveated { target_fps: foveated.target_fps, ..Foveated::uniform(share) }
-                    });
-                foveated.set_if_neq(chosen);
-            }
-            _ => match Auto::new(target_ms) {
-                Ok(auto) => {
-                    commands.entity(camera).insert(auto);
-                }
+        let Some(mut auto) = auto.filter(|auto| auto.target_ms == target_ms) else {
+            match Auto::new(target_ms) {
+                Ok(auto) => drop(commands.entity(camera).insert(auto)),
                 Err(problem) => error_once!("Foveated::auto of camera {camera}: {problem}"),
-            },
-        }
+            }
+            continue;
+        };
+        foveated.set_if_neq(match auto.share_for(measured_ms) {
+            Some(share) => Foveated { target_fps: foveated.target_fps, ..Foveated::uniform(share) },
+            None => Foveated { kind: FoveationKind::Off, ..*foveated },
+        });
     }
 }
 

@@ -1,16 +1,16 @@
 //! Cameras with the plugin's components: their depth, size, usages and MSAA.
 
-use crate::components::{Afterimage, Foveated, FoveationKind};
-use crate::layers::{AddedStorage, Layers, LayersFound, ReplacedMsaa, chosen_msaa};
+use crate::components::Afterimage;
+use crate::layers::{AddedStorage, Layers, find_layers};
 use crate::oblique::{NEAR, is_oblique};
 use crate::orthographic::{self, is_orthographic};
 use afterimage::DepthConvention;
-use bevy::camera::{CameraMainTextureUsages, Hdr, RenderTarget};
+use bevy::camera::{CameraMainTextureUsages, Hdr};
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass, NormalPrepass};
-use bevy::ecs::query::QueryData;
-use bevy::ecs::system::SystemChangeTick;
 use bevy::prelude::*;
+use bevy::render::camera::ExtractedCamera;
 use bevy::render::render_resource::TextureUsages;
+use bevy::render::{Render, RenderApp, RenderSystems};
 
 /// Size in pixels of what a camera draws: its viewport, which must lie inside its target. `None`: nothing is drawn, or
 /// an application has changed the target and not yet the viewport.
@@ -48,77 +48,52 @@ pub(crate) fn depth_convention(clip_from_view: Mat4) -> Result<DepthConvention, 
 #[derive(Resource, Clone, Copy, Debug, Default)]
 pub struct AfterimageSupported;
 
-pub(crate) struct CameraPlugin;
-
-impl Plugin for CameraPlugin {
-    fn build(&self, app: &mut App) {
-        // Before what reads these components in this frame.
-        app.add_systems(
-            PostUpdate,
-            (replace_msaa, add_usages)
-                .run_if(resource_exists::<AfterimageSupported>)
-                .after(LayersFound)
-                .before(bevy::camera::CameraUpdateSystems),
-        );
+pub(crate) fn plugin(app: &mut App) {
+    // Before what reads these components in this frame.
+    app.add_systems(
+        PostUpdate,
+        add_usages
+            .run_if(resource_exists::<AfterimageSupported>)
+            .after(find_layers)
+            .before(bevy::camera::CameraUpdateSystems),
+    );
+    if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+        // Before what chooses textures and pipelines.
+        let switch = switch_msaa_off.after(RenderSystems::ExtractCommands).before(RenderSystems::PrepareAssets);
+        render_app.add_systems(Render, switch);
     }
 }
 
-/// What says whether MSAA of a camera is off.
-#[derive(QueryData)]
-struct Sampled {
-    entity: Entity,
-    target: &'static RenderTarget,
-    afterimage: Option<(&'static Afterimage, &'static Foveated)>,
-    prepasses: (Has<DepthPrepass>, Has<NormalPrepass>, Has<MotionVectorPrepass>),
+/// A camera that is rendered without MSAA, because most of its pixels have no samples to average.
+#[derive(Component, Clone, Copy, Debug)]
+pub(crate) struct WithoutMsaa {
+    /// Whether history antialiases instead.
+    pub antialias: bool,
 }
 
-impl SampledItem<'_, '_> {
-    /// What draws on another camera's picture is not foveated.
-    fn foveated(&self, layers: &Layers) -> Option<&Afterimage> {
-        let (afterimage, foveated) = self.afterimage?;
-        // Where foveation comes and goes by itself, MSAA stays off: other pipelines would have to be compiled.
-        let is_foveated = foveated.kind != FoveationKind::Off || foveated.target_fps.is_some();
-        (is_foveated && layers.below(self.entity).is_none()).then_some(afterimage)
-    }
+type HasPrepass = Or<(With<DepthPrepass>, With<NormalPrepass>, With<MotionVectorPrepass>)>;
 
-    fn has_prepass(&self) -> bool {
-        let (depth, normal, motion) = self.prepasses;
-        depth || normal || motion
-    }
-}
-
-/// Switches MSAA off for cameras that are foveated, and back when they no longer are. Other cameras of their targets
-/// with a prepass have none either: Bevy has prepasses of one target share textures.
-fn replace_msaa(
-    mut commands: Commands,
-    mut cameras: Query<(&mut Msaa, Option<Ref<ReplacedMsaa>>, Sampled)>,
-    layers: Res<Layers>,
-    tick: SystemChangeTick,
-) {
-    let foveated = cameras.iter().filter(|(.., camera)| camera.foveated(&layers).is_some());
-    let targets: Vec<_> = foveated.map(|(.., camera)| camera.target.normalize(None)).collect();
-    for (mut msaa, replaced, camera) in &mut cameras {
-        let chosen = chosen_msaa(&msaa, replaced.as_ref(), tick.this_run());
-        let foveated = camera.foveated(&layers);
-        let is_off = foveated.is_some() || camera.has_prepass() && targets.contains(&camera.target.normalize(None));
-        if is_off && *msaa != Msaa::Off {
-            if foveated.is_some_and(|afterimage| afterimage.antialias) {
-                info_once!("Afterimage sets Msaa::Off, and antialiases in its place");
-            } else if *msaa == Msaa::default() {
-                // Bevy's default was hardly chosen.
-                info_once!("Afterimage sets Msaa::Off. Set Afterimage::antialias for what it did");
-            } else {
-                warn_once!(
-                    "Afterimage sets Msaa::Off: most pixels of a foveated frame have no samples to average. Set \
-                     Afterimage::antialias for what it did"
-                );
-            }
-            commands.entity(camera.entity).insert(ReplacedMsaa(*msaa));
-            *msaa = Msaa::Off;
-        } else if replaced.is_some() && (!is_off || chosen == Msaa::Off) {
-            *msaa = chosen;
-            commands.entity(camera.entity).remove::<ReplacedMsaa>();
+/// Switches MSAA off for what is rendered; the camera's own component stays. Other cameras of its target with a prepass
+/// have none either: Bevy has prepasses of one target share textures.
+fn switch_msaa_off(mut cameras: Query<(&mut Msaa, &ExtractedCamera, Option<&WithoutMsaa>), HasPrepass>) {
+    let targets: Vec<_> =
+        cameras.iter().filter(|(.., without)| without.is_some()).map(|(_, camera, _)| camera.target.clone()).collect();
+    for (mut msaa, camera, without) in &mut cameras {
+        if *msaa == Msaa::Off || !targets.contains(&camera.target) {
+            continue;
         }
+        if without.is_some_and(|without| without.antialias) {
+            info_once!("Afterimage sets Msaa::Off, and antialiases in its place");
+        } else if *msaa == Msaa::default() {
+            // Bevy's default was hardly chosen.
+            info_once!("Afterimage sets Msaa::Off. Set Afterimage::antialias for what it did");
+        } else {
+            warn_once!(
+                "Afterimage sets Msaa::Off: most pixels of a foveated frame have no samples to average. Set \
+                 Afterimage::antialias for what it did"
+            );
+        }
+        *msaa = Msaa::Off;
     }
 }
 

@@ -9,7 +9,7 @@ use bevy::prelude::*;
 /// or an orthographic one.
 ///
 /// Requires `DepthPrepass` and `MotionVectorPrepass`, by which quads are chosen; they stay when this component is
-/// removed. Sets [`Msaa::Off`] while it runs, because most pixels have no samples to average.
+/// removed. While it runs there is no MSAA, whatever [`Msaa`] says: most pixels have no samples to average.
 ///
 /// All of it may change at any time, through reflection, too: an inspector such as `bevy-inspector-egui` shows the
 /// fields, as it does those of [`Foveated`].

@@ -5,8 +5,9 @@ use crate::counters::Counters;
 use crate::frame::ExtractedAfterimage;
 use crate::oblique::ObliquePass;
 use afterimage::gpu::{Afterimage, Frame, Prime, Region, Target, Textures};
-use afterimage::internal::{Reset, ViewFrame};
+use afterimage::internal::Reset;
 use afterimage::{Exposure, FrameError, wgpu};
+use std::slice;
 use std::sync::atomic::AtomicBool;
 use wgpu::{CommandEncoder, Device, Texture, TextureFormat, TextureUsages};
 
@@ -20,32 +21,37 @@ pub(crate) const ALBEDO_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 /// which each pass tests one for equality: this is none of them.
 const NO_PASS: f32 = 0.5 / 255.0;
 
-/// Usages of textures that the post-process writes.
-const STORAGE: TextureUsages = TextureUsages::STORAGE_BINDING.union(TextureUsages::TEXTURE_BINDING);
+/// Usages of textures that compute passes write. Tests read them.
+const STORAGE: TextureUsages =
+    TextureUsages::STORAGE_BINDING.union(TextureUsages::TEXTURE_BINDING).union(TextureUsages::COPY_SRC);
 
-fn texture(device: &Device, size: wgpu::Extent3d, format: TextureFormat, usage: TextureUsages) -> Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("afterimage"),
-        size,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage,
-        view_formats: &[],
-    })
+/// A texture of a size and a format: `kept`, or a new one.
+fn fitting(
+    kept: Option<Texture>,
+    device: &Device,
+    size: wgpu::Extent3d,
+    format: TextureFormat,
+    usage: TextureUsages,
+) -> Texture {
+    let new = || {
+        device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("afterimage"),
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        })
+    };
+    kept.filter(|kept| kept.size() == size && kept.format() == format).unwrap_or_else(new)
 }
 
 /// Size of what a camera draws.
 fn extent(frame: &ExtractedAfterimage) -> wgpu::Extent3d {
     let [width, height] = frame.desc.size_px;
     wgpu::Extent3d { width, height, depth_or_array_layers: 1 }
-}
-
-/// A texture of the frame's size that passes of the plugin write: `kept`, or a new one.
-fn fitting(kept: Option<Texture>, device: &Device, frame: &ExtractedAfterimage, format: TextureFormat) -> Texture {
-    let fits = |kept: &Texture| kept.size() == extent(frame);
-    kept.filter(fits).unwrap_or_else(|| texture(device, extent(frame), format, STORAGE | TextureUsages::COPY_SRC))
 }
 
 /// State of a camera's post-process.
@@ -81,54 +87,28 @@ pub(crate) struct Drawn<'a> {
     pub motion: &'a Texture,
     /// First pixel of the viewport.
     pub origin_px: [u32; 2],
-}
-
-/// Depths that are tested before pixels are shaded.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Tested<'a> {
-    /// That of the main pass.
-    pub main: &'a wgpu::TextureView,
+    /// Depth that is tested in the main pass before pixels are shaded.
+    pub tested: &'a wgpu::TextureView,
     /// That of a deferred camera's lighting passes, of the same size.
-    pub lighting: Option<&'a wgpu::TextureView>,
+    pub tested_lighting: Option<&'a wgpu::TextureView>,
 }
 
-/// What a frame has beside its description.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Facts {
-    pub index: u64,
-    /// Factor of the camera on colors.
-    pub exposure: f32,
-    pub jitter_px: [f32; 2],
-}
-
-/// Inputs of a frame, which borrows them.
-struct Inputs<'a> {
-    regions: [[Region<'a>; 1]; 3],
-    albedo: Option<&'a Texture>,
-    views: [ViewFrame; 1],
-}
-
-impl<'a> Inputs<'a> {
-    fn new(
-        (frame, facts): (&ExtractedAfterimage, Facts),
-        drawn: Drawn<'a>,
-        [plain, albedo]: [Option<&'a Texture>; 2],
-    ) -> Self {
-        let Drawn { color, depth, motion, origin_px } = drawn;
+impl<'a> Drawn<'a> {
+    /// Color, depth and motion of the viewport.
+    fn regions(self, plain: Option<&'a Texture>) -> [[Region<'a>; 1]; 3] {
+        let Self { color, depth, motion, origin_px, .. } = self;
         let depth = plain.map_or(Region::new(depth, origin_px), |plain| Region::new(plain, [0, 0]));
-        let regions = [[Region::new(color, origin_px)], [depth], [Region::new(motion, origin_px)]];
-        Self { regions, albedo, views: [ViewFrame { jitter_px: facts.jitter_px, ..frame.view }] }
+        [[Region::new(color, origin_px)], [depth], [Region::new(motion, origin_px)]]
     }
+}
 
-    fn frame(&self, index: u64, is_reset: bool) -> Frame<'_> {
-        let [color, depth, motion] = self.regions.each_ref().map(|region| Textures::Regions(region));
-        Frame {
-            depth: Some(depth),
-            motion: Some(motion),
-            albedo: self.albedo.map(Textures::from),
-            reset: if is_reset { Reset::All } else { Reset::None },
-            ..Frame::new(color, &self.views, index)
-        }
+/// A frame as the post-process takes it.
+fn described<'a>(frame: &'a ExtractedAfterimage, [color, depth, motion]: &'a [[Region<'a>; 1]; 3]) -> Frame<'a> {
+    Frame {
+        depth: Some(Textures::Regions(depth)),
+        motion: Some(Textures::Regions(motion)),
+        reset: if frame.reset { Reset::All } else { Reset::None },
+        ..Frame::new(Textures::Regions(color), slice::from_ref(&frame.view), frame.index)
     }
 }
 
@@ -197,33 +177,27 @@ impl Context {
         &mut self,
         device: &Device,
         encoder: &mut CommandEncoder,
-        (frame, facts): (&ExtractedAfterimage, Facts),
+        frame: &ExtractedAfterimage,
         drawn: Drawn<'_>,
-        tested: Tested<'_>,
         oblique: &mut ObliquePass,
     ) -> Result<(), FrameError> {
         self.resize(device, encoder, frame)?;
-        let has_albedo = frame.desc.has_albedo;
-        self.albedo = has_albedo.then(|| fitting(self.albedo.take(), device, frame, ALBEDO_FORMAT));
+        let (size, has_albedo) = (extent(frame), frame.desc.has_albedo);
+        self.albedo = has_albedo.then(|| fitting(self.albedo.take(), device, size, ALBEDO_FORMAT, STORAGE));
         self.plain = frame.oblique.map(|projection| {
-            let plain = fitting(self.plain.take(), device, frame, TextureFormat::R32Float);
-            oblique.record(device, encoder, (drawn.depth, drawn.origin_px), &plain, (projection, facts.jitter_px));
+            let plain = fitting(self.plain.take(), device, size, TextureFormat::R32Float, STORAGE);
+            let of_view = (projection, frame.view.jitter_px);
+            oblique.record(device, encoder, (drawn.depth, drawn.origin_px), &plain, of_view);
             plain
         });
-        let inputs = Inputs::new((frame, facts), drawn, [self.plain.as_ref(), None]);
-        self.post.plan(device, encoder, &inputs.frame(facts.index, frame.reset))?;
-        let (open, format) = (tested.main.texture(), tested.main.texture().format());
-        let fits = |kept: &Texture| kept.size() == open.size() && kept.format() == format;
-        if !self.depth.as_ref().is_some_and(fits) {
-            let usage = TextureUsages::COPY_DST | TextureUsages::COPY_SRC;
-            self.depth = Some(texture(device, open.size(), format, usage));
-        }
-        if let Some(kept) = &self.depth {
-            encoder.copy_texture_to_texture(open.as_image_copy(), kept.as_image_copy(), open.size());
-        }
+        self.post.plan(device, encoder, &described(frame, &drawn.regions(self.plain.as_ref())))?;
+        let (open, copies) = (drawn.tested.texture(), TextureUsages::COPY_DST | TextureUsages::COPY_SRC);
+        let kept = fitting(self.depth.take(), device, open.size(), open.format(), copies);
+        encoder.copy_texture_to_texture(open.as_image_copy(), kept.as_image_copy(), open.size());
+        self.depth = Some(kept);
         let origin_px = drawn.origin_px;
-        let main = Prime { target: tested.main, origin_px, near_depth: 1.0, stencil: None, is_half: false };
-        let lighting = tested.lighting.map(|target| Prime { target, near_depth: NO_PASS, ..main });
+        let main = Prime { target: drawn.tested, origin_px, near_depth: 1.0, stencil: None, is_half: false };
+        let lighting = drawn.tested_lighting.map(|target| Prime { target, near_depth: NO_PASS, ..main });
         // Of one size: if the second does not fit, the first does not, and nothing is closed.
         for prime in [Some(main), lighting].into_iter().flatten() {
             self.post.prime(device, encoder, 0, &prime)?;
@@ -245,53 +219,42 @@ impl Context {
         &mut self,
         device: &Device,
         encoder: &mut CommandEncoder,
-        (frame, facts): (&ExtractedAfterimage, Facts),
+        frame: &ExtractedAfterimage,
         drawn: Drawn<'_>,
         output: &wgpu::TextureView,
         blit: &mut BlitPass,
     ) -> Result<(), FrameError> {
-        let own = [self.plain.clone(), self.albedo.clone()];
-        let inputs = Inputs::new((frame, facts), drawn, own.each_ref().map(Option::as_ref));
-        let ratio = self.exposure.map_or(1.0, |previous| facts.exposure / previous);
+        let ratio = self.exposure.map_or(1.0, |previous| frame.exposure / previous);
         let exposure = if ratio != 1.0 && ratio.is_finite() { Exposure::Changed { ratio } } else { Exposure::Same };
-        let described = Frame { exposure, ..inputs.frame(facts.index, frame.reset) };
+        let regions = drawn.regions(self.plain.as_ref());
+        let albedo = self.albedo.as_ref().map(Textures::from);
+        let described = Frame { exposure, albedo, ..described(frame, &regions) };
         let shown = output.texture();
         let is_direct = shown.format() == FORMAT && shown.usage().contains(TextureUsages::STORAGE_BINDING);
-        self.reserve(device, frame, is_direct);
+        let reserve = |kept: &mut Option<Texture>, is_needed: bool| {
+            *kept = is_needed.then(|| fitting(kept.take(), device, extent(frame), FORMAT, STORAGE));
+        };
+        reserve(&mut self.spare, !is_direct || frame.debug.is_some());
+        reserve(&mut self.spare_debug, !is_direct && frame.debug.is_some());
         let region = [Region::new(shown, drawn.origin_px)];
+        let [spare, spare_debug] = [&self.spare, &self.spare_debug].map(Option::as_ref);
         let direct = Textures::Regions(&region);
-        let (spare, spare_debug) = (self.spare.clone(), self.spare_debug.clone());
         if let Some(view) = frame.debug {
-            let target = spare_debug.as_ref().map_or(direct, Textures::from);
+            let target = spare_debug.map_or(direct, Textures::from);
             self.post.record_view(device, encoder, &described, target, view)?;
         }
         let target = Target {
             counters: self.counters.as_ref().map(|counters| &counters.buffer),
-            ..Target::new(spare.as_ref().map_or(direct, Textures::from))
+            ..Target::new(spare.map_or(direct, Textures::from))
         };
         self.post.record(device, encoder, &described, target)?;
-        self.exposure = Some(facts.exposure);
+        self.exposure = Some(frame.exposure);
         if let (Some(counters), Some(quads)) = (&mut self.counters, self.post.quad_list(0)) {
             counters.record(encoder, quads);
         }
         if !is_direct && let Some(frame) = spare_debug.or(spare) {
-            blit.record(device, encoder, &frame, output, drawn.origin_px);
+            blit.record(device, encoder, frame, output, drawn.origin_px);
         }
         Ok(())
-    }
-
-    /// Makes the textures that stand in for the main texture.
-    fn reserve(&mut self, device: &Device, frame: &ExtractedAfterimage, is_direct: bool) {
-        let size = extent(frame);
-        for (spare, is_needed) in [
-            (&mut self.spare, !is_direct || frame.debug.is_some()),
-            (&mut self.spare_debug, !is_direct && frame.debug.is_some()),
-        ] {
-            if !is_needed {
-                *spare = None;
-            } else if spare.as_ref().is_none_or(|texture| texture.size() != size) {
-                *spare = Some(texture(device, size, FORMAT, STORAGE));
-            }
-        }
     }
 }

@@ -9,44 +9,31 @@ use bevy::prelude::*;
 use bevy::render::renderer::{PendingCommandBuffers, RenderDevice, RenderGraph, RenderGraphSystems, RenderQueue};
 use bevy::render::sync_world::MainEntity;
 use bevy::render::{Render, RenderApp, RenderSystems};
-use std::sync::Mutex;
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex};
 
 /// Percent of all pixels that show kept history.
 const KEPT: DiagnosticPath = DiagnosticPath::const_new("afterimage/kept");
 /// Percent of all pixels where another surface came into sight.
 const DISOCCLUDED: DiagnosticPath = DiagnosticPath::const_new("afterimage/disoccluded");
 
-/// Counts that arrived, by main-world camera.
-type Arrived = (Entity, AfterimageStats);
+/// Counts that arrived, by main-world camera: of both worlds.
+#[derive(Resource, Clone, Default)]
+struct Arrived(Arc<Mutex<Vec<(Entity, AfterimageStats)>>>);
 
-#[derive(Resource)]
-struct Arrivals(Mutex<Receiver<Arrived>>);
-
-#[derive(Resource)]
-struct Departures(Sender<Arrived>);
-
-pub(crate) struct DiagnosticsPlugin;
-
-impl Plugin for DiagnosticsPlugin {
-    fn build(&self, app: &mut App) {
-        let (sender, receiver) = channel();
-        app.insert_resource(Arrivals(Mutex::new(receiver)))
-            .register_diagnostic(Diagnostic::new(KEPT).with_suffix("%"))
-            .register_diagnostic(Diagnostic::new(DISOCCLUDED).with_suffix("%"))
-            .add_systems(PreUpdate, receive);
-        if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
-            render_app
-                .insert_resource(Departures(sender))
-                .add_systems(Render, read_back.in_set(RenderSystems::Cleanup))
-                .add_systems(
-                    RenderGraph,
-                    (
-                        stamp::<0>.before(RenderGraphSystems::Render),
-                        stamp::<1>.after(RenderGraphSystems::Render).before(RenderGraphSystems::Submit),
-                    ),
-                );
-        }
+pub(crate) fn plugin(app: &mut App) {
+    let arrived = Arrived::default();
+    app.insert_resource(arrived.clone())
+        .register_diagnostic(Diagnostic::new(KEPT).with_suffix("%"))
+        .register_diagnostic(Diagnostic::new(DISOCCLUDED).with_suffix("%"))
+        .add_systems(PreUpdate, receive);
+    if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+        render_app.insert_resource(arrived).add_systems(Render, read_back.in_set(RenderSystems::Cleanup)).add_systems(
+            RenderGraph,
+            (
+                stamp::<0>.before(RenderGraphSystems::Render),
+                stamp::<1>.after(RenderGraphSystems::Render).before(RenderGraphSystems::Submit),
+            ),
+        );
     }
 }
 
@@ -61,15 +48,15 @@ struct Pace {
 }
 
 fn receive(
-    arrivals: Res<Arrivals>,
+    arrived: Res<Arrived>,
     mut cameras: Query<&mut AfterimageStats>,
     mut diagnostics: Diagnostics,
     mut pace: Local<Pace>,
 ) {
     let now = Instant::now();
     let frame_us = pace.last.replace(now).map_or(0, |last| now.duration_since(last).as_micros() as u64);
-    let Ok(arrivals) = arrivals.0.lock() else { return };
-    for (camera, counts) in arrivals.try_iter() {
+    let Ok(mut arrived) = arrived.0.lock() else { return };
+    for (camera, counts) in arrived.drain(..) {
         let Ok(mut shown) = cameras.get_mut(camera) else { continue };
         *shown = AfterimageStats { frame_us, ..counts };
         let percent = |pixels: u64| 100.0 * pixels as f64 / shown.pixels.max(1) as f64;
@@ -106,15 +93,13 @@ fn stamp<const INDEX: u32>(
 
 fn read_back(
     mut contexts: ResMut<Contexts>,
-    departures: Res<Departures>,
+    arrived: Res<Arrived>,
     queue: Res<RenderQueue>,
     cameras: Query<&MainEntity>,
 ) {
+    let Ok(mut arrived) = arrived.0.lock() else { return };
     for (&camera, context) in &mut contexts.0 {
         let counts = context.counters.as_mut().and_then(|counters| counters.poll(queue.get_timestamp_period()));
-        if let (Some(counts), Ok(main)) = (counts, cameras.get(camera)) {
-            // The receiver lives as long as the application.
-            let _ = departures.0.send((main.id(), counts));
-        }
+        arrived.extend(cameras.get(camera).ok().map(|main| main.id()).zip(counts));
     }
 }

@@ -1,6 +1,6 @@
 //! Description of a frame, from Bevy's camera.
 
-use crate::camera::{AfterimageSupported, depth_convention, drawn_size_px};
+use crate::camera::{AfterimageSupported, WithoutMsaa, depth_convention, drawn_size_px};
 use crate::components::{Afterimage, AfterimageDebug, Foveated, FoveationKind};
 use crate::counters::AfterimageStats;
 use crate::gaze::{CameraGaze, Gaze};
@@ -17,17 +17,22 @@ use bevy::ecs::query::{QueryData, QueryState};
 use bevy::light::Skybox;
 use bevy::pbr::ScreenSpaceReflections;
 use bevy::prelude::*;
-use bevy::render::camera::{TemporalJitter, extract_cameras};
+use bevy::render::camera::{ExtractedCamera, MipBias, TemporalJitter, extract_cameras};
 use bevy::render::sync_component::{SyncComponent, SyncComponentPlugin};
 use bevy::render::sync_world::RenderEntity;
 use bevy::render::{ExtractSchedule, MainWorld, RenderApp};
+
+/// Mip levels by which textures are sharper where history averages their samples.
+const MIP_BIAS: f32 = -0.5;
 
 /// What the post-process needs to know of a camera, in the render world.
 #[derive(Component, Clone, Debug)]
 pub(crate) struct ExtractedAfterimage {
     pub desc: ContextDesc,
-    /// Without jitter, which temporal antialiasing sets later.
     pub view: ViewFrame,
+    pub index: u64,
+    /// Factor of the camera on colors.
+    pub exposure: f32,
     /// The camera's projection, if its depth is not that of a distance.
     pub oblique: Option<Mat4>,
     /// Jitter of an orthographic camera, which Bevy's does not fit.
@@ -39,6 +44,17 @@ pub(crate) struct ExtractedAfterimage {
     pub has_planted_jitter: bool,
 }
 
+impl ExtractedAfterimage {
+    /// Adds what is known of a camera after extraction: temporal antialiasing sets its jitter then.
+    pub fn complete(&mut self, camera: &ExtractedCamera, jitter: Option<&TemporalJitter>) {
+        // Bevy's offset moves the camera; content moves the other way.
+        let bevys = jitter.map_or(Vec2::ZERO, |jitter| -jitter.offset);
+        let sign = if self.has_planted_jitter { -1.0 } else { 1.0 };
+        self.view.jitter_px = (sign * self.jitter_px.map_or(bevys, Vec2::from)).to_array();
+        self.exposure = camera.exposure;
+    }
+}
+
 /// Errors that tests plant ([`crate::testing`]) in a camera, to see that they are noticed.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub struct Planted {
@@ -48,20 +64,19 @@ pub struct Planted {
     pub jitter: bool,
 }
 
-// The camera's own component is what makes this one disappear with it.
-impl SyncComponent<RenderApp, FramePlugin> for Afterimage {
-    type Target = ExtractedAfterimage;
+/// Tells this crate's extraction of a component from that of others.
+struct Extraction;
+
+// The camera's own component is what makes these disappear with it.
+impl SyncComponent<RenderApp, Extraction> for Afterimage {
+    type Target = (ExtractedAfterimage, WithoutMsaa);
 }
 
-pub(crate) struct FramePlugin;
-
-impl Plugin for FramePlugin {
-    fn build(&self, app: &mut App) {
-        app.add_plugins(SyncComponentPlugin::<Afterimage, FramePlugin>::default());
-        if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
-            // Bevy takes the jitter of cameras that have none.
-            render_app.add_systems(ExtractSchedule, extract.after(extract_cameras));
-        }
+pub(crate) fn plugin(app: &mut App) {
+    app.add_plugins(SyncComponentPlugin::<Afterimage, Extraction>::default());
+    if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+        // Bevy takes the jitter of cameras that have none.
+        render_app.add_systems(ExtractSchedule, extract.after(extract_cameras));
     }
 }
 
@@ -83,6 +98,7 @@ struct MainCamera {
     space: Option<&'static CompositingSpace>,
     sky: Option<&'static Skybox>,
     jitters: Has<TemporalJitter>,
+    has_bias: Has<MipBias>,
     reflects: Has<ScreenSpaceReflections>,
     is_scaled: Has<MainPassResolutionOverride>,
     depth: Has<DepthPrepass>,
@@ -106,68 +122,77 @@ fn extract(
     for mut camera in cameras.iter_mut(&mut world) {
         let mut entity = commands.entity(camera.entity);
         let is_foveated = is_supported && camera.foveated.kind != FoveationKind::Off;
+        let without_msaa = WithoutMsaa { antialias: camera.afterimage.antialias };
+        let below = layers.below(camera.main);
         let Some(size) = drawn_size_px(camera.camera).filter(|_| is_foveated) else {
             entity.remove::<ExtractedAfterimage>();
+            // Where foveation comes and goes by itself, MSAA stays off: other pipelines would have to be compiled.
+            match is_supported && camera.foveated.target_fps.is_some() && below.is_none() {
+                true => entity.insert(without_msaa),
+                false => entity.remove::<WithoutMsaa>(),
+            };
             continue;
         };
-        let described = match layers.below(camera.main) {
+        let described = match below {
             Some(below) => Err(format!(
                 "it draws on the picture of camera {below}, and quads cannot. Give Afterimage to camera \
                  {below} alone"
             )),
             None => describe(&camera, size, gaze),
         };
-        let (mut desc, view, oblique) = match described {
-            Ok(described) => described,
+        let mut frame = match described {
+            Ok(frame) => frame,
             Err(problem) => {
                 if said.insert(camera.main, problem.clone()).as_ref() != Some(&problem) {
                     error!("camera {} renders every pixel, without Afterimage: {problem}", camera.main);
                 }
-                entity.remove::<ExtractedAfterimage>();
+                entity.remove::<(ExtractedAfterimage, WithoutMsaa)>();
                 continue;
             }
         };
         said.remove(&camera.main);
-        let mut jitter_px = None;
-        let planted = camera.planted.copied().unwrap_or_default();
-        desc.motion = planted.motion.unwrap_or(desc.motion);
-        if let Method::Smr(smr) = &mut desc.settings.method {
+        frame.index = index;
+        frame.reset = std::mem::take(&mut camera.afterimage.bypass_change_detection().reset);
+        if let Method::Smr(smr) = &mut frame.desc.settings.method {
             smr.antialias = camera.afterimage.antialias && !camera.jitters;
-            let is_flat = oblique.is_some_and(is_orthographic);
-            if smr.antialias && is_flat {
-                jitter_px = Some(Foveation::jitter_px(index));
-            } else if smr.antialias {
+            let (px, is_flat) = (Foveation::jitter_px(index), frame.oblique.is_some_and(is_orthographic));
+            frame.jitter_px = (smr.antialias && is_flat).then_some(px);
+            if smr.antialias && !is_flat {
                 // Bevy's offset moves the camera; content moves the other way.
-                let offset = -Vec2::from(Foveation::jitter_px(index));
-                entity.insert(TemporalJitter { offset });
-            } else if camera.afterimage.antialias {
-                warn_once!(
-                    "Afterimage does not antialias camera {}: it has TemporalJitter, which temporal antialiasing adds. \
-                     Remove that, or set Afterimage::antialias to false",
-                    camera.main
-                );
+                entity.insert(TemporalJitter { offset: -Vec2::from(px) });
             }
-            desc.has_albedo = camera.is_deferred && smr.antialias && is_opaque(camera.camera, &clear_color);
+            let is_seen_through = !is_opaque(camera.camera, &clear_color);
+            frame.desc.has_albedo = camera.is_deferred && smr.antialias && !is_seen_through;
             // Of either there is one.
-            desc.keep_alpha = !desc.has_albedo;
-            if camera.is_deferred && !desc.has_albedo {
-                info_once!(
-                    "Afterimage remembers textures of deferred camera {} with their light: albedo needs \
-                     Afterimage::antialias, and a clear color that is opaque",
-                    camera.main
-                );
+            frame.desc.keep_alpha = !frame.desc.has_albedo;
+            if smr.antialias && !camera.has_bias {
+                entity.insert(MipBias(MIP_BIAS));
             }
+            say_what_is_left_out(&camera, frame.desc.has_albedo);
         }
-        entity.insert(ExtractedAfterimage {
-            desc,
-            view,
-            oblique,
-            jitter_px,
-            reset: std::mem::take(&mut camera.afterimage.bypass_change_detection().reset),
-            debug: camera.debug.map(|debug| debug.0),
-            counts: camera.counts,
-            has_planted_jitter: planted.jitter,
-        });
+        entity.insert((frame, without_msaa));
+    }
+}
+
+/// What an application may expect of a camera's frames, and they lack.
+fn say_what_is_left_out(camera: &MainCameraItem<'_, '_>, has_albedo: bool) {
+    let name = camera.main;
+    if camera.jitters && camera.afterimage.antialias {
+        warn_once!(
+            "Afterimage does not antialias camera {name}: it has TemporalJitter, which temporal antialiasing adds. \
+             Remove that, or set Afterimage::antialias to false"
+        );
+    } else if camera.jitters {
+        warn_once!(
+            "camera {name}: TemporalJitter, which temporal antialiasing adds, blurs beside Afterimage. Remove temporal \
+             antialiasing, and set Afterimage::antialias"
+        );
+    }
+    if camera.is_deferred && !has_albedo {
+        info_once!(
+            "Afterimage remembers textures of deferred camera {name} with their light: albedo needs \
+             Afterimage::antialias, and a clear color that is opaque"
+        );
     }
 }
 
@@ -181,11 +206,8 @@ fn is_opaque(camera: &Camera, default: &ClearColor) -> bool {
     }
 }
 
-/// Context, view, and projection whose depth is not that of a distance.
-type Described = (ContextDesc, ViewFrame, Option<Mat4>);
-
-/// Description of a camera's frame, or why it renders every pixel.
-fn describe(camera: &MainCameraItem<'_, '_>, size: UVec2, gaze: Gaze) -> Result<Described, String> {
+/// Description of a camera's frame without antialiasing, or why it renders every pixel.
+fn describe(camera: &MainCameraItem<'_, '_>, size: UVec2, gaze: Gaze) -> Result<ExtractedAfterimage, String> {
     check(camera)?;
     let uv = camera.gaze.map_or(gaze.uv, |own| own.uv).filter(|uv| uv.is_finite());
     let gaze = uv.map_or(afterimage::Gaze::Lost, |uv| afterimage::Gaze::Uv { uv: uv.to_array() });
@@ -197,7 +219,8 @@ fn describe(camera: &MainCameraItem<'_, '_>, size: UVec2, gaze: Gaze) -> Result<
     if desc.settings.noisy {
         return Err("its settings expect a noise input, which Bevy does not have".into());
     }
-    desc.motion = MotionConvention::BEVY;
+    let planted = camera.planted.copied().unwrap_or_default();
+    desc.motion = planted.motion.unwrap_or(MotionConvention::BEVY);
     desc.depth = depth;
     let now = clip_from_view * camera.transform.to_matrix().inverse();
     let past = camera.previous.map(|previous| previous.unjittered_clip_from_world);
@@ -205,9 +228,19 @@ fn describe(camera: &MainCameraItem<'_, '_>, size: UVec2, gaze: Gaze) -> Result<
     let view = match is_flat {
         true => orthographic::view(size, gaze, now, past),
         false => perspective(size, gaze, clip_from_view, now, past),
-    };
-    let is_mapped = is_flat || is_oblique(clip_from_view);
-    Ok((desc, ViewFrame { depth: Some(depth), ..view? }, is_mapped.then_some(clip_from_view)))
+    }?;
+    Ok(ExtractedAfterimage {
+        desc,
+        view: ViewFrame { depth: Some(depth), ..view },
+        index: 0,
+        exposure: 1.0,
+        oblique: (is_flat || is_oblique(clip_from_view)).then_some(clip_from_view),
+        jitter_px: None,
+        reset: false,
+        debug: camera.debug.map(|debug| debug.0),
+        counts: camera.counts,
+        has_planted_jitter: planted.jitter,
+    })
 }
 
 /// The view of a perspective camera with its motion.

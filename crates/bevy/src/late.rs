@@ -22,15 +22,11 @@ use bevy::render::view::{ExtractedView, RetainedViewEntity, ViewDepthStencilText
 use bevy::render::{Render, RenderApp, RenderSystems};
 use std::sync::atomic::Ordering;
 
-pub(crate) struct LatePlugin;
-
-impl Plugin for LatePlugin {
-    fn build(&self, app: &mut App) {
-        let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };
-        render_app
-            .add_systems(Render, (part::<Opaque3d>, part::<AlphaMask3d>).in_set(RenderSystems::Prepare))
-            .add_systems(Core3d, draw_late.after(show).in_set(ShowQuads));
-    }
+pub(crate) fn plugin(app: &mut App) {
+    let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };
+    render_app
+        .add_systems(Render, (part::<Opaque3d>, part::<AlphaMask3d>).in_set(RenderSystems::Prepare))
+        .add_systems(Core3d, draw_late.after(show).in_set(ShowQuads));
 }
 
 /// A draw function that draws items with a prepass together with the quads, and the others after the post-process.

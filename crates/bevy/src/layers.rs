@@ -13,10 +13,8 @@ use bevy::camera::{
 };
 use bevy::core_pipeline::schedule::Core3d;
 use bevy::core_pipeline::upscaling::upscaling;
-use bevy::ecs::change_detection::Tick;
 use bevy::ecs::entity::EntityHashMap;
 use bevy::ecs::query::QueryData;
-use bevy::ecs::system::SystemChangeTick;
 use bevy::light::Skybox;
 use bevy::prelude::*;
 use bevy::render::camera::ExtractedCamera;
@@ -25,29 +23,17 @@ use bevy::render::renderer::{RenderContext, ViewQuery};
 use bevy::render::sync_world::RenderEntity;
 use bevy::render::view::{ViewTarget, prepare_view_targets};
 use bevy::render::{Extract, ExtractSchedule, Render, RenderApp, RenderSystems};
-use std::ops::Deref;
 
-pub(crate) struct LayersPlugin;
-
-impl Plugin for LayersPlugin {
-    fn build(&self, app: &mut App) {
-        app.init_resource::<Layers>().add_systems(PostUpdate, find_layers.in_set(LayersFound));
-        if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
-            render_app
-                .init_resource::<Uppers>()
-                .add_systems(ExtractSchedule, extract)
-                .add_systems(
-                    Render,
-                    keep_what_lies_below.in_set(RenderSystems::CreateViews).before(prepare_view_targets),
-                )
-                .add_systems(Core3d, hand_up.after(upscaling));
-        }
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Layers>().add_systems(PostUpdate, find_layers);
+    if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+        render_app
+            .init_resource::<Uppers>()
+            .add_systems(ExtractSchedule, extract)
+            .add_systems(Render, keep_what_lies_below.in_set(RenderSystems::CreateViews).before(prepare_view_targets))
+            .add_systems(Core3d, hand_up.after(upscaling));
     }
 }
-
-/// [`Layers`] are those of this frame.
-#[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct LayersFound;
 
 /// For each camera that keeps the picture of one below it, that one.
 #[derive(Resource, Clone, Default)]
@@ -60,31 +46,16 @@ impl Layers {
     }
 }
 
-/// MSAA of a camera before the plugin switched it off.
-#[derive(Component)]
-pub(crate) struct ReplacedMsaa(pub Msaa);
-
-/// MSAA that the application has chosen, which may have changed after it was replaced.
-pub(crate) fn chosen_msaa(
-    msaa: &(impl DetectChanges + Deref<Target = Msaa>),
-    replaced: Option<&Ref<ReplacedMsaa>>,
-    now: Tick,
-) -> Msaa {
-    let is_kept = |replaced: &&Ref<ReplacedMsaa>| !msaa.last_changed().is_newer_than(replaced.last_changed(), now);
-    replaced.filter(is_kept).map_or(**msaa, |replaced| replaced.0)
-}
-
 /// The plugin has added `STORAGE_BINDING` to the usages of a camera's main textures.
 #[derive(Component)]
 pub(crate) struct AddedStorage;
 
 #[derive(QueryData)]
-struct Sharing {
+pub(crate) struct Sharing {
     entity: Entity,
     camera: &'static Camera,
     target: &'static RenderTarget,
-    msaa: Ref<'static, Msaa>,
-    replaced: Option<Ref<'static, ReplacedMsaa>>,
+    msaa: &'static Msaa,
     usages: &'static CameraMainTextureUsages,
     has_added_storage: Has<AddedStorage>,
     is_hdr: Has<Hdr>,
@@ -98,16 +69,15 @@ type Texture = (Option<NormalizedRenderTarget>, bool, Option<CompositingSpace>, 
 
 impl SharingItem<'_, '_> {
     /// The texture without the plugin.
-    fn texture(&self, now: Tick) -> Texture {
+    fn texture(&self) -> Texture {
         let added = if self.has_added_storage { TextureUsages::STORAGE_BINDING } else { TextureUsages::empty() };
         let usages = self.usages.0.difference(added);
-        let msaa = chosen_msaa(&self.msaa, self.replaced.as_ref(), now);
-        (self.target.normalize(None), self.is_hdr, self.space.copied(), msaa, usages)
+        (self.target.normalize(None), self.is_hdr, self.space.copied(), *self.msaa, usages)
     }
 
     /// Whether it keeps what is in its texture without the plugin, where another camera has drawn to that.
-    fn keeps(&self, now: Tick) -> bool {
-        let is_written_back = chosen_msaa(&self.msaa, self.replaced.as_ref(), now) != Msaa::Off
+    fn keeps(&self) -> bool {
+        let is_written_back = *self.msaa != Msaa::Off
             && match self.camera.msaa_writeback {
                 MsaaWriteback::Off => false,
                 MsaaWriteback::Auto => self.camera.viewport.is_none(),
@@ -123,17 +93,16 @@ impl SharingItem<'_, '_> {
     }
 }
 
-fn find_layers(cameras: Query<Sharing>, mut layers: ResMut<Layers>, tick: SystemChangeTick) {
-    let now = tick.this_run();
+pub(crate) fn find_layers(cameras: Query<Sharing>, mut layers: ResMut<Layers>) {
     layers.0.clear();
     if !cameras.iter().any(|camera| camera.afterimage.is_some()) {
         return;
     }
     let mut drawn: Vec<_> = cameras.iter().filter(|camera| camera.camera.is_active).collect();
     drawn.sort_by_key(|camera| (camera.camera.order, camera.entity));
-    for (i, camera) in drawn.iter().enumerate().filter(|(_, camera)| camera.keeps(now) && !camera.covers()) {
-        let texture = camera.texture(now);
-        if let Some(below) = drawn[..i].iter().rev().find(|below| below.texture(now) == texture) {
+    for (i, camera) in drawn.iter().enumerate().filter(|(_, camera)| camera.keeps() && !camera.covers()) {
+        let texture = camera.texture();
+        if let Some(below) = drawn[..i].iter().rev().find(|below| below.texture() == texture) {
             layers.0.insert(camera.entity, below.entity);
         }
     }
@@ -150,13 +119,11 @@ fn extract(layers: Extract<Res<Layers>>, entities: Extract<Query<RenderEntity>>,
 }
 
 /// Has Bevy keep the texture of a camera, though no other camera has drawn to it, or its MSAA is off now.
-fn keep_what_lies_below(uppers: Res<Uppers>, mut cameras: Query<(&mut ExtractedCamera, &Msaa)>) {
+fn keep_what_lies_below(uppers: Res<Uppers>, mut cameras: Query<&mut ExtractedCamera>) {
     for &upper in uppers.0.values() {
-        let Ok((mut camera, msaa)) = cameras.get_mut(upper) else { continue };
-        match *msaa {
-            Msaa::Off => camera.clear_color = ClearColorConfig::None,
-            _ => camera.msaa_writeback = MsaaWriteback::Always,
-        }
+        let Ok(mut camera) = cameras.get_mut(upper) else { continue };
+        camera.clear_color = ClearColorConfig::None;
+        camera.msaa_writeback = MsaaWriteback::Always;
     }
 }
 

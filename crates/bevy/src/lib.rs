@@ -1,30 +1,4 @@
-//! Foveated rendering with memory for Bevy, in one plugin.
-//!
-//! A camera with [`Afterimage`] shades few of its pixels in a frame: those around the gaze, an even pattern that moves,
-//! and those where history lacks something. A temporal post-process, the crate [`afterimage`], fills the rest from
-//! what was shaded before. Without an eye tracker, [`Foveated::uniform`] spreads them evenly.
-//!
-//! ```no_run
-//! use bevy::prelude::*;
-//! use bevy_afterimage::{Afterimage, AfterimagePlugin, CursorGazePlugin, Foveated};
-//!
-//! App::new()
-//!     .add_plugins((DefaultPlugins, AfterimagePlugin, CursorGazePlugin))
-//!     .add_systems(Startup, |mut commands: Commands| {
-//!         commands.spawn((Camera3d::default(), Afterimage::default(), Foveated::default()));
-//!     })
-//!     .run();
-//! ```
-//!
-//! # How a frame is made
-//!
-//! 1. Bevy draws depth and motion vectors of every pixel, in its prepasses, and what is deferred.
-//! 2. The post-process chooses quads of 2x2 pixels, and closes the depth buffer elsewhere.
-//! 3. Bevy lights what is deferred, and draws opaque and alpha-masked meshes and the sky as always; the depth test
-//!    skips what is closed.
-//! 4. The post-process makes the frame, and opens the depth buffer again.
-//! 5. Bevy draws what has no prepass, what transmits light, what is transparent, particles and gizmos at every pixel,
-//!    and its effects.
+#![doc = include_str!("../README.md")]
 
 mod albedo;
 mod auto;
@@ -71,15 +45,15 @@ impl Plugin for AfterimagePlugin {
             return;
         }
         app.init_resource::<AfterimageSupported>().add_plugins((
-            auto::AutoPlugin,
-            camera::CameraPlugin,
-            layers::LayersPlugin,
-            late::LatePlugin,
-            frame::FramePlugin,
-            pass::PassPlugin,
-            albedo::AlbedoPlugin,
-            diagnostics::DiagnosticsPlugin,
-            warnings::WarningsPlugin,
+            auto::plugin,
+            camera::plugin,
+            layers::plugin,
+            late::plugin,
+            frame::plugin,
+            pass::plugin,
+            albedo::plugin,
+            diagnostics::plugin,
+            warnings::plugin,
         ));
     }
 
@@ -99,7 +73,3 @@ impl Plugin for AfterimagePlugin {
         }
     }
 }
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;

@@ -1,7 +1,7 @@
 //! Systems that run the post-process in Bevy's render graph.
 
 use crate::blit::BlitPass;
-use crate::context::{Context, Drawn, Facts, Tested};
+use crate::context::{Context, Drawn};
 use crate::frame::ExtractedAfterimage;
 use crate::oblique::ObliquePass;
 use crate::orthographic::jittered;
@@ -11,7 +11,6 @@ use bevy::core_pipeline::core_3d::{main_opaque_pass_3d, main_transparent_pass_3d
 use bevy::core_pipeline::deferred::copy_lighting_id::{DeferredLightingIdDepthTexture, copy_deferred_lighting_id};
 use bevy::core_pipeline::prepass::ViewPrepassTextures;
 use bevy::core_pipeline::schedule::Core3d;
-use bevy::diagnostic::FrameCount;
 use bevy::ecs::entity::EntityHashMap;
 use bevy::ecs::query::QueryData;
 use bevy::pbr::main_transmissive_pass_3d;
@@ -23,49 +22,51 @@ use bevy::render::view::{ExtractedView, ViewDepthStencilTexture, ViewTarget, Vie
 use bevy::render::{GpuResourceAppExt, Render, RenderApp, RenderSystems};
 use wgpu::util::DeviceExt;
 
-pub(crate) struct PassPlugin;
-
 /// In Bevy's schedule `Core3d`, after the opaque meshes and before those that blend: history fills what was not shaded.
 /// Passes that read the frame belong after it.
 #[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
 pub struct ShowQuads;
 
-impl Plugin for PassPlugin {
-    fn build(&self, app: &mut App) {
-        let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };
-        render_app
-            .init_gpu_resource::<Contexts>()
-            .init_gpu_resource::<BlitPass>()
-            .init_gpu_resource::<ObliquePass>()
-            .add_systems(Render, prepare.in_set(RenderSystems::PrepareResources))
-            .configure_sets(
-                Core3d,
-                ShowQuads
-                    .after(main_opaque_pass_3d)
-                    .before(main_transmissive_pass_3d)
-                    .before(main_transparent_pass_3d)
-                    .before(Core3dSystems::EarlyPostProcess),
-            )
-            .add_systems(
-                Core3d,
-                (
-                    jitter.before(Core3dSystems::Prepass),
-                    plan.after(Core3dSystems::Prepass).after(copy_deferred_lighting_id).before(Core3dSystems::MainPass),
-                    show.in_set(ShowQuads),
-                ),
-            );
-    }
+pub(crate) fn plugin(app: &mut App) {
+    let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };
+    render_app
+        .init_gpu_resource::<Contexts>()
+        .init_gpu_resource::<BlitPass>()
+        .init_gpu_resource::<ObliquePass>()
+        .add_systems(Render, prepare.in_set(RenderSystems::PrepareResources))
+        .configure_sets(
+            Core3d,
+            ShowQuads
+                .after(main_opaque_pass_3d)
+                .before(main_transmissive_pass_3d)
+                .before(main_transparent_pass_3d)
+                .before(Core3dSystems::EarlyPostProcess),
+        )
+        .add_systems(
+            Core3d,
+            (
+                jitter.before(Core3dSystems::Prepass),
+                plan.after(Core3dSystems::Prepass).after(copy_deferred_lighting_id).before(Core3dSystems::MainPass),
+                show.in_set(ShowQuads),
+            ),
+        );
 }
 
 /// Post-processes of the cameras, by render entity.
 #[derive(Resource, Default)]
 pub(crate) struct Contexts(pub EntityHashMap<Context>);
 
-fn prepare(mut contexts: ResMut<Contexts>, device: Res<RenderDevice>, cameras: Query<(Entity, &ExtractedAfterimage)>) {
+fn prepare(
+    mut contexts: ResMut<Contexts>,
+    device: Res<RenderDevice>,
+    mut cameras: Query<(Entity, &mut ExtractedAfterimage, &ExtractedCamera, Option<&TemporalJitter>)>,
+) {
     let device = device.wgpu_device();
     let contexts = &mut contexts.0;
     contexts.retain(|&camera, _| cameras.contains(camera));
-    for (camera, frame) in &cameras {
+    for (camera, mut frame, extracted, jitter) in &mut cameras {
+        frame.complete(extracted, jitter);
+        let frame = &*frame;
         let prepared = match contexts.get_mut(&camera) {
             Some(context) => context.prepare(device, frame),
             None => Context::new(device, frame).map(|context| {
@@ -89,36 +90,24 @@ pub(crate) struct Camera {
     depth: &'static ViewDepthStencilTexture,
     prepass: &'static ViewPrepassTextures,
     lighting: Option<&'static DeferredLightingIdDepthTexture>,
-    jitter: Option<&'static TemporalJitter>,
 }
 
 impl<'a> CameraItem<'a, '_> {
     fn drawn(&self) -> Option<Drawn<'a>> {
+        // Bevy leaves the texture where a camera is no longer deferred.
+        let lighting = self.prepass.deferred_lighting_pass_id.as_ref().and(self.lighting);
         Some(Drawn {
             color: self.target.main_texture(),
             depth: &self.prepass.depth.as_ref()?.texture.texture,
             motion: &self.prepass.motion_vectors.as_ref()?.texture.texture,
             origin_px: self.camera.viewport.as_ref().map_or([0, 0], |viewport| viewport.physical_position.into()),
+            tested: self.depth.attachment.depth_stencil_views().attachment_view(),
+            tested_lighting: lighting.map(|lighting| &*lighting.texture.default_view),
         })
-    }
-
-    fn tested(&self) -> Tested<'a> {
-        let main = self.depth.attachment.depth_stencil_views().attachment_view();
-        // Bevy leaves the texture where a camera is no longer deferred.
-        let lighting = self.prepass.deferred_lighting_pass_id.as_ref().and(self.lighting);
-        Tested { main, lighting: lighting.map(|lighting| &*lighting.texture.default_view) }
     }
 
     fn clip_from_view(&self, jitter_px: [f32; 2]) -> Mat4 {
         jittered(self.view.clip_from_view, self.frame.desc.size_px.into(), jitter_px.into())
-    }
-
-    fn facts(&self, count: &FrameCount) -> Facts {
-        // Bevy's offset moves the camera; content moves the other way.
-        let sign = if self.frame.has_planted_jitter { -1.0 } else { 1.0 };
-        let bevys = self.jitter.map_or(Vec2::ZERO, |jitter| -jitter.offset);
-        let jitter_px = (sign * self.frame.jitter_px.map_or(bevys, Vec2::from)).to_array();
-        Facts { index: count.0.into(), exposure: self.camera.exposure, jitter_px }
     }
 }
 
@@ -144,28 +133,21 @@ pub(crate) fn plan(
     view: ViewQuery<Camera>,
     mut contexts: ResMut<Contexts>,
     mut oblique: ResMut<ObliquePass>,
-    count: Res<FrameCount>,
     mut ctx: RenderContext,
 ) {
     let entity = view.entity();
     let camera = view.into_inner();
     let (Some(context), Some(drawn)) = (contexts.0.get_mut(&entity), camera.drawn()) else { return };
-    let tested = camera.tested();
-    let main = tested.main.texture();
+    let main = drawn.tested.texture();
     let copies = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
     let is_other = |lighting: &wgpu::TextureView| lighting.texture().size() != main.size();
     // In the frame in which `Afterimage` comes, Bevy's textures may be those of the camera without it.
-    if main.sample_count() > 1 || !main.usage().contains(copies) || tested.lighting.is_some_and(is_other) {
+    if main.sample_count() > 1 || !main.usage().contains(copies) || drawn.tested_lighting.is_some_and(is_other) {
         return;
     }
-    let facts = camera.facts(&count);
-    let device = ctx.render_device().clone();
-    let diagnostics = ctx.diagnostic_recorder();
-    let diagnostics = diagnostics.as_deref();
-    let encoder = ctx.command_encoder();
-    let span = diagnostics.time_span(encoder, "afterimage_plan");
-    let planned = context.plan(device.wgpu_device(), encoder, (camera.frame, facts), drawn, tested, &mut oblique);
-    span.end(encoder);
+    let planned = timed(&mut ctx, "afterimage_plan", |device, encoder| {
+        context.plan(device, encoder, camera.frame, drawn, &mut oblique)
+    });
     if let Err(problem) = planned {
         error_once!("camera {entity} renders every pixel, without Afterimage: {problem}");
     }
@@ -176,7 +158,6 @@ pub(crate) fn show(
     view: ViewQuery<Camera>,
     mut contexts: ResMut<Contexts>,
     mut blit: ResMut<BlitPass>,
-    count: Res<FrameCount>,
     uniforms: Res<ViewUniforms>,
     mut ctx: RenderContext,
 ) {
@@ -186,17 +167,17 @@ pub(crate) fn show(
     if !context.is_planned {
         return;
     }
-    let (facts, target) = (camera.facts(&count), camera.target);
-    let output = target.main_texture_other_view();
-    let device = ctx.render_device().clone();
-    let device = device.wgpu_device();
-    let diagnostics = ctx.diagnostic_recorder();
-    let diagnostics = diagnostics.as_deref();
-    let encoder = ctx.command_encoder();
-    let span = diagnostics.time_span(encoder, "afterimage");
-    let recorded = context.record(device, encoder, (camera.frame, facts), drawn, output, &mut blit);
-    context.open(encoder, camera.depth.texture());
-    span.end(encoder);
+    let target = camera.target;
+    let recorded = timed(&mut ctx, "afterimage", |device, encoder| {
+        let recorded =
+            context.record(device, encoder, camera.frame, drawn, target.main_texture_other_view(), &mut blit);
+        context.open(encoder, camera.depth.texture());
+        // What is drawn from here on is averaged by no history.
+        if let (true, Some(buffer)) = (camera.frame.view.jitter_px != [0.0; 2], uniforms.uniforms.buffer()) {
+            set_jitter(device, encoder, buffer, &camera, [0.0; 2]);
+        }
+        recorded
+    });
     match recorded {
         // Only now is the other texture the main one.
         Ok(()) => drop(target.post_process_write()),
@@ -204,12 +185,22 @@ pub(crate) fn show(
             error_once!("Afterimage of camera {entity} shows the quads alone: {problem}");
         }
     }
-    // What is drawn from here on is averaged by no history.
-    if (camera.jitter.is_some() || camera.frame.jitter_px.is_some())
-        && let Some(buffer) = uniforms.uniforms.buffer()
-    {
-        set_jitter(device, encoder, buffer, &camera, [0.0, 0.0]);
-    }
+}
+
+/// Records passes whose time is one of Bevy's diagnostics.
+pub(crate) fn timed<T>(
+    ctx: &mut RenderContext,
+    name: &'static str,
+    record: impl FnOnce(&wgpu::Device, &mut wgpu::CommandEncoder) -> T,
+) -> T {
+    let device = ctx.render_device().clone();
+    let diagnostics = ctx.diagnostic_recorder();
+    let diagnostics = diagnostics.as_deref();
+    let encoder = ctx.command_encoder();
+    let span = diagnostics.time_span(encoder, name);
+    let recorded = record(device.wgpu_device(), encoder);
+    span.end(encoder);
+    recorded
 }
 
 /// Sets the jitter of a projection, for what is drawn from here on: the first matrix of the view's uniforms is

@@ -36,6 +36,13 @@ impl std::error::Error for ScanpathError {}
 
 const COLUMNS: &str = "t_s,x_px,y_px,valid";
 
+/// Of `WIDTHxHEIGHT`.
+fn screen_size(text: &str) -> Option<Vec2> {
+    let (width, height) = text.trim().split_once('x')?;
+    let size = Vec2::new(width.parse().ok()?, height.parse().ok()?);
+    (size.is_finite() && size.min_element() >= 1.0).then_some(size)
+}
+
 impl Scanpath {
     /// Reads a file.
     ///
@@ -56,32 +63,24 @@ impl Scanpath {
         let mut screen: Option<Vec2> = None;
         let mut has_columns = false;
         let mut samples: Vec<(f64, Option<Vec2>)> = vec![];
-        for (number, line) in (1..).zip(text.lines()) {
-            let refuse = |expected: &str| Err(ScanpathError(format!("line {number}: expected {expected}")));
-            let line = line.trim();
+        for (number, line) in (1..).zip(text.lines().map(str::trim)) {
+            let refuse = |expected: &str| ScanpathError(format!("line {number}: expected {expected}"));
             if let Some(comment) = line.strip_prefix('#') {
                 if let Some(size) = comment.trim().strip_prefix("screen_px:") {
-                    let sides: Vec<f32> = size.trim().split('x').filter_map(|side| side.parse().ok()).collect();
-                    match sides[..] {
-                        [w, h] if w >= 1.0 && h >= 1.0 && w.is_finite() && h.is_finite() => {
-                            screen = Some(Vec2::new(w, h))
-                        }
-                        _ => return refuse("the screen's size, as in `# screen_px: 1920x1080`"),
-                    }
+                    let expected = "the screen's size, as in `# screen_px: 1920x1080`";
+                    screen = Some(screen_size(size).ok_or_else(|| refuse(expected))?);
                 }
-            } else if !has_columns {
-                if line != COLUMNS {
-                    return refuse(&format!("the columns `{COLUMNS}`"));
-                }
+            } else if !has_columns && line == COLUMNS {
                 has_columns = true;
+            } else if !has_columns {
+                return Err(refuse(&format!("the columns `{COLUMNS}`")));
             } else if !line.is_empty() {
-                let Some(screen) = screen else {
-                    return refuse("the screen's size above, as in `# screen_px: 1920x1080`");
-                };
+                let expected = "the screen's size above, as in `# screen_px: 1920x1080`";
+                let screen = screen.ok_or_else(|| refuse(expected))?;
                 let fields: Vec<f64> = line.split(',').filter_map(|field| field.trim().parse().ok()).collect();
-                let [t, x, y, valid] = fields[..] else { return refuse("four numbers") };
+                let [t, x, y, valid] = fields[..] else { return Err(refuse("four numbers")) };
                 if !t.is_finite() || samples.last().is_some_and(|&(last, _)| t < last) {
-                    return refuse("finite times in ascending order");
+                    return Err(refuse("finite times in ascending order"));
                 }
                 let uv = Vec2::new(x as f32, y as f32) / screen;
                 samples.push((t, (valid > 0.0 && uv.is_finite()).then_some(uv)));

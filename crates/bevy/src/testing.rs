@@ -7,9 +7,7 @@ use crate::pass::Contexts;
 use afterimage::internal::{ContextDesc, ViewFrame};
 use afterimage::wgpu;
 use bevy::core_pipeline::prepass::ViewPrepassTextures;
-use bevy::diagnostic::FrameCount;
 use bevy::prelude::*;
-use bevy::render::camera::TemporalJitter;
 use bevy::render::view::ViewTarget;
 
 /// What the post-process of a camera was given in the last frame, and its output.
@@ -43,26 +41,21 @@ pub struct Recorded {
 
 /// What the post-processes of the last frame were given.
 pub fn recorded(render_world: &mut World) -> Vec<Recorded> {
-    type Camera<'a> =
-        (Entity, &'a ExtractedAfterimage, &'a ViewTarget, &'a ViewPrepassTextures, Option<&'a TemporalJitter>);
+    type Camera<'a> = (Entity, &'a ExtractedAfterimage, &'a ViewTarget, &'a ViewPrepassTextures);
     let mut cameras = render_world.query::<Camera<'_>>();
-    let index = render_world.resource::<FrameCount>().0.into();
     let contexts = &render_world.resource::<Contexts>().0;
     cameras
         .iter(render_world)
-        .filter_map(|(camera, frame, target, prepass, jitter)| {
+        .filter_map(|(camera, frame, target, prepass)| {
             let context = contexts.get(&camera)?;
             let mask = context.mask()?.clone();
-            let bevys = jitter.map_or([0.0, 0.0], |jitter| (-jitter.offset).to_array());
-            let jitter_px = frame.jitter_px.unwrap_or(bevys);
-            let view = ViewFrame { jitter_px, ..frame.view };
             // Without effects after the post-process the camera's textures were swapped once.
             let color = (**target.main_texture_other()).clone();
             let depth = (*prepass.depth.as_ref()?.texture.texture).clone();
             let motion = (*prepass.motion_vectors.as_ref()?.texture.texture).clone();
             let (open, plain, albedo) = (context.depth.clone(), context.plain.clone(), context.albedo.clone());
             let output = (**target.main_texture()).clone();
-            let desc = frame.desc;
+            let ExtractedAfterimage { desc, view, index, .. } = *frame;
             Some(Recorded { camera, desc, view, index, color, mask, depth, open, plain, albedo, motion, output })
         })
         .collect()

@@ -7,7 +7,6 @@ use bevy::core_pipeline::schedule::Core3d;
 use bevy::ecs::schedule::Schedules;
 use bevy::platform::collections::HashSet;
 use bevy::prelude::*;
-use bevy::render::camera::TemporalJitter;
 use bevy::render::render_phase::{BinnedPhaseItem, BinnedRenderPhase, ViewBinnedRenderPhases};
 use bevy::render::render_resource::{
     CachedRenderPipelineId, CompareFunction, PipelineCache, PipelineDescriptor, RenderPipelineDescriptor,
@@ -16,28 +15,11 @@ use bevy::render::view::ExtractedView;
 use bevy::render::{Extract, ExtractSchedule, RenderApp};
 use bevy::shader::{Shader, Source};
 
-pub(crate) struct WarningsPlugin;
-
-impl Plugin for WarningsPlugin {
-    fn build(&self, app: &mut App) {
-        app.add_systems(PostUpdate, (warn_of_jitter, warn_of_unused));
-        if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
-            // In extraction, because the text of shaders is in the main world. Phases are those of the last frame.
-            render_app.add_systems(ExtractSchedule, (warn_of_pipelines, warn_of_passes));
-        }
-    }
-}
-
-fn warn_of_jitter(cameras: Query<(Entity, &Afterimage, &Foveated), With<TemporalJitter>>) {
-    // With `antialias` another line says so (`frame.rs`).
-    let is_used = |(_, afterimage, foveated): &(Entity, &Afterimage, &Foveated)| {
-        !afterimage.antialias && foveated.kind != FoveationKind::Off
-    };
-    if let Some((camera, ..)) = cameras.iter().find(is_used) {
-        warn_once!(
-            "camera {camera}: TemporalJitter, which temporal antialiasing adds, blurs beside Afterimage. Remove \
-             temporal antialiasing, and set Afterimage::antialias"
-        );
+pub(crate) fn plugin(app: &mut App) {
+    app.add_systems(PostUpdate, warn_of_unused);
+    if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+        // In extraction, because the text of shaders is in the main world. Phases are those of the last frame.
+        render_app.add_systems(ExtractSchedule, (warn_of_pipelines, warn_of_passes));
     }
 }
 

@@ -12,7 +12,9 @@ mod props;
 
 use bevy::anti_alias::taa::TemporalAntiAliasing;
 use bevy::diagnostic::{DiagnosticsStore, FrameTimeDiagnosticsPlugin};
+use bevy::pbr::ScreenSpaceTransmission;
 use bevy::prelude::*;
+use bevy::render::RenderPlugin;
 use bevy::render::camera::TemporalJitter;
 use bevy::render::diagnostic::RenderDiagnosticsPlugin;
 use bevy_afterimage::afterimage::DebugView;
@@ -26,11 +28,14 @@ fn main() {
     let mut app = App::new();
     // (1) to (3): what Afterimage adds to an application. `Foveated::auto` has the device's time by
     // `RenderDiagnosticsPlugin`.
-    app.add_plugins((DefaultPlugins, RenderDiagnosticsPlugin, AfterimagePlugin, CursorGazePlugin))
+    // Otherwise the world is missing while the pipelines of another mode are compiled.
+    let render = RenderPlugin { synchronous_pipeline_compilation: true, ..default() };
+    app.add_plugins((DefaultPlugins.set(render), RenderDiagnosticsPlugin, AfterimagePlugin, CursorGazePlugin))
         .add_plugins((FrameTimeDiagnosticsPlugin::default(), ScenePlugin { lamps: 16, moves: true }, PropsPlugin))
         .add_systems(Startup, |mut commands: Commands| {
             let foveated = (Afterimage::default(), Foveated::uniform(0.25));
-            let camera = commands.spawn((Camera3d::default(), foveated, TONEMAPPING, stroll(1.5))).id();
+            let camera = (Camera3d::default(), ScreenSpaceTransmission::default(), TONEMAPPING, stroll(1.5));
+            let camera = commands.spawn(camera).insert(foveated).id();
             commands.insert_resource(Held { by: camera });
         })
         .init_resource::<Mode>()

@@ -70,7 +70,13 @@ fn glass(mut commands: Commands, mut meshes: Meshes, mut materials: Materials) {
         perceptual_roughness: 0.1,
         ..default()
     };
-    let ball = StandardMaterial { specular_transmission: 0.9, thickness: 0.8, ior: 1.5, ..default() };
+    let ball = StandardMaterial {
+        specular_transmission: 0.9,
+        thickness: 0.8,
+        ior: 1.5,
+        perceptual_roughness: 0.1,
+        ..default()
+    };
     let pane = (Mesh3d(meshes.add(Cuboid::new(1.6, 1.6, 0.03))), MeshMaterial3d(materials.add(pane)));
     let ball = (Mesh3d(meshes.add(Sphere::new(0.45))), MeshMaterial3d(materials.add(ball)));
     commands.spawn((pane, Transform::from_xyz(1.2, 0.8, 3.2)));
@@ -94,7 +100,8 @@ fn sparks(mut commands: Commands, mut meshes: Meshes, mut materials: Materials) 
 
 /// A flashlight, and a hand that a camera of its own shows on top.
 fn held(mut commands: Commands, held: Res<Held>, mut meshes: Meshes, mut materials: Materials) {
-    let light = SpotLight { intensity: 2e6, range: 30.0, outer_angle: 0.35, shadow_maps_enabled: true, ..default() };
+    let light = SpotLight { intensity: 5e6, range: 30.0, shadow_maps_enabled: true, ..default() };
+    let light = SpotLight { inner_angle: 0.25, outer_angle: 0.3, ..light };
     let ahead = Transform::default().looking_at(Vec3::new(0.0, -0.1, -1.0), Vec3::Y);
     let camera = Camera { order: 1, clear_color: ClearColorConfig::None, ..default() };
     let lens = Projection::from(PerspectiveProjection { fov: 1.2, ..default() });

@@ -2,7 +2,7 @@
 
 use crate::common::headless::Headless;
 use crate::common::scene::{ScenePlugin, TONEMAPPING, stroll};
-use crate::{SIZE, kind, psnr_db};
+use crate::{SIZE, kind, psnr_db, rendered_msaa};
 use bevy::camera::ClearColorConfig;
 use bevy::core_pipeline::prepass::MotionVectorPrepass;
 use bevy::light::{EnvironmentMapLight, Skybox};
@@ -63,26 +63,25 @@ fn a_sky_stands_in_for_a_clear_color() {
 
 #[test]
 fn msaa_comes_back() {
-    let msaa = |headless: &Headless, camera: Entity| *headless.app.world().entity(camera).get::<Msaa>().unwrap();
     let (mut headless, camera) = still((Msaa::Sample4, kind(FoveationKind::Quads)));
-    assert_eq!(msaa(&headless, camera), Msaa::Off);
+    assert_eq!(rendered_msaa(&mut headless), [Msaa::Off]);
     headless.app.world_mut().entity_mut(camera).insert(kind(FoveationKind::Off));
     headless.frames(2);
-    assert_eq!(msaa(&headless, camera), Msaa::Sample4);
+    assert_eq!(rendered_msaa(&mut headless), [Msaa::Sample4]);
     headless.app.world_mut().entity_mut(camera).insert(kind(FoveationKind::Quads));
     headless.frames(2);
-    assert_eq!(msaa(&headless, camera), Msaa::Off);
+    assert_eq!(rendered_msaa(&mut headless), [Msaa::Off]);
+    // What the application has chosen is there all the time.
+    assert_eq!(headless.app.world().entity(camera).get(), Some(&Msaa::Sample4));
     headless.app.world_mut().entity_mut(camera).remove::<Afterimage>();
     headless.frames(2);
-    assert_eq!(msaa(&headless, camera), Msaa::Sample4);
-    // What the application chooses meanwhile stays.
-    headless.app.world_mut().entity_mut(camera).insert(kind(FoveationKind::Quads));
+    assert_eq!(rendered_msaa(&mut headless), [Msaa::Sample4]);
+    // A camera that is refused keeps it.
+    let mut refused = headless.app.world_mut().entity_mut(camera);
+    refused.insert(kind(FoveationKind::Quads)).get_mut::<Camera>().expect("a camera").clear_color =
+        ClearColorConfig::None;
     headless.frames(2);
-    headless.app.world_mut().entity_mut(camera).insert(Msaa::Off);
-    headless.frames(2);
-    headless.app.world_mut().entity_mut(camera).remove::<Afterimage>();
-    headless.frames(2);
-    assert_eq!(msaa(&headless, camera), Msaa::Off);
+    assert_eq!(rendered_msaa(&mut headless), [Msaa::Sample4]);
     assert_eq!(headless.problems(), &[] as &[String]);
 }
 

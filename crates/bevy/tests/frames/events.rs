@@ -1,7 +1,7 @@
 //! What happens to an application while it runs.
 
 use crate::common::headless::Headless;
-use crate::{SIZE, compared, courtyard, courtyards, kind, psnr_db, wander};
+use crate::{SIZE, compared, courtyard, courtyards, kind, psnr_db, rendered_msaa, wander};
 use bevy::prelude::*;
 use bevy_afterimage::afterimage::DebugView;
 use bevy_afterimage::afterimage::internal::{Method, Settings, Wrs};
@@ -29,8 +29,7 @@ fn msaa_is_switched_off() {
         let mut headless = courtyard((kind(FoveationKind::Quads), msaa));
         headless.frames(5);
         assert_eq!(headless.problems(), &[] as &[String]);
-        let mut cameras = headless.app.world_mut().query::<&Msaa>();
-        assert!(cameras.iter(headless.app.world()).all(|msaa| *msaa == Msaa::Off));
+        assert_eq!(rendered_msaa(&mut headless), [Msaa::Off]);
         headless.read()
     });
     assert!(without == with);

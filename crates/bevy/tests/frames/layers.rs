@@ -6,6 +6,7 @@ use crate::common::scene::TONEMAPPING;
 use bevy::asset::RenderAssetUsages;
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{ClearColorConfig, Hdr, MsaaWriteback, RenderTarget, Viewport};
+use bevy::core_pipeline::prepass::DepthPrepass;
 use bevy::light::{NotShadowCaster, Skybox};
 use bevy::prelude::*;
 use bevy::render::RenderApp;
@@ -115,11 +116,23 @@ fn a_view_model_is_drawn_on_the_world() {
     assert!(shots.iter().all(|shot| arm_pixels(shot) > 500), "the arm is missing");
 }
 
+/// Cameras on one target: with an arm or without, and how many are foveated.
+type Setup = (&'static str, bool, usize, fn(&mut World, RenderTarget, Foveated));
+
+fn check_setups(setups: &[Setup]) {
+    for &(name, has_arm, foveated, spawn) in setups {
+        let (mut headless, targets) = room(spawn);
+        let shots = compare(&mut headless, &targets, name);
+        let found = recorded(headless.app.sub_app_mut(RenderApp).world_mut()).len();
+        assert_eq!(found, foveated, "{name}: foveated cameras");
+        let arms = shots.each_ref().map(|shot| arm_pixels(shot));
+        assert!(!has_arm || arms.iter().all(|&pixels| pixels > 20), "{name}: the arm is missing: {arms:?}");
+    }
+}
+
 #[test]
 fn cameras_on_one_target_show_what_they_show_at_full_rate() {
-    type Spawn = fn(&mut World, RenderTarget, Foveated);
-    // With an arm or without, and how many cameras are foveated.
-    let setups: [(&str, bool, usize, Spawn); 11] = [
+    check_setups(&[
         ("hdr below hdr", true, 1, |world, target, kind| {
             world.spawn((world_camera(target.clone(), kind), Hdr));
             world.spawn((arm_camera(target, ClearColorConfig::Default), Hdr));
@@ -187,15 +200,85 @@ fn cameras_on_one_target_show_what_they_show_at_full_rate() {
             let camera = Camera { order: 1, clear_color: ClearColorConfig::None, ..default() };
             world.spawn(world_camera(target, kind)).insert((camera, Skybox { image: Some(image), ..default() }));
         }),
-    ];
-    for (name, has_arm, foveated, spawn) in setups {
-        let (mut headless, targets) = room(spawn);
+    ]);
+}
+
+/// What lies below shows through where nothing is drawn.
+const SEE_THROUGH: ClearColorConfig = ClearColorConfig::Custom(Color::NONE);
+
+/// A camera between a world and an arm that sees the arm elsewhere.
+fn wide_camera(target: RenderTarget) -> impl Bundle {
+    (arm_camera(target, SEE_THROUGH), Projection::from(PerspectiveProjection { fov: 1.5, ..default() }))
+}
+
+#[test]
+fn cameras_of_two_formats_show_what_they_show_at_full_rate() {
+    // Each format has a texture of its own, which is blended with the target.
+    check_setups(&[
+        ("hdr below none", true, 1, |world, target, kind| {
+            world.spawn((world_camera(target.clone(), kind), Hdr));
+            world.spawn(arm_camera(target, SEE_THROUGH));
+        }),
+        ("none below hdr", true, 1, |world, target, kind| {
+            world.spawn(world_camera(target.clone(), kind));
+            world.spawn((arm_camera(target, SEE_THROUGH), Hdr));
+        }),
+        // Writeback is that of the lowest camera, not of the one in the middle.
+        ("hdr, none, hdr", true, 1, |world, target, kind| {
+            world.spawn((world_camera(target.clone(), kind), Hdr));
+            world.spawn(wide_camera(target.clone()));
+            let camera = Camera { order: 2, ..default() };
+            world.spawn((arm_camera(target, ClearColorConfig::Default), Hdr)).insert(camera);
+        }),
+        ("hdr, see-through, above none", false, 1, |world, target, kind| {
+            let backdrop = ClearColorConfig::Custom(Color::srgb(0.6, 0.5, 0.5));
+            world.spawn(arm_camera(target.clone(), backdrop)).insert(Camera { clear_color: backdrop, ..default() });
+            let camera = Camera { order: 1, clear_color: SEE_THROUGH, ..default() };
+            world.spawn((world_camera(target, kind), Hdr)).insert(camera);
+        }),
+        ("hdr beside none", false, 2, |world, target, kind| {
+            let physical_size = UVec2::new(SIZE.x / 2, SIZE.y);
+            let half = |order: u32| {
+                let physical_position = UVec2::new(order * SIZE.x / 2, 0);
+                let viewport = Some(Viewport { physical_position, physical_size, ..default() });
+                Camera { order: order as isize, viewport, ..default() }
+            };
+            world.spawn((world_camera(target.clone(), kind), Hdr)).insert(half(0));
+            world.spawn(world_camera(target, kind)).insert(half(1));
+        }),
+        ("hdr below none with a prepass", true, 1, |world, target, kind| {
+            world.spawn((world_camera(target.clone(), kind), Hdr));
+            world.spawn((arm_camera(target, SEE_THROUGH), DepthPrepass));
+        }),
+    ]);
+}
+
+#[test]
+fn hdr_comes_and_goes() {
+    // Where it clears, all is white: on a texture of its own.
+    let white = ClearColorConfig::Custom(Color::WHITE);
+    let (mut headless, targets) = room(|world, target, kind| {
+        world.spawn(world_camera(target.clone(), kind));
+        world.spawn(arm_camera(target, white));
+    });
+    let clears = |shots: &[Vec<u8>; 2]| shots.each_ref().map(|shot| shot[..3] == [255; 3]);
+    let shots = compare(&mut headless, &targets, "none");
+    assert_eq!(clears(&shots), [false; 2]);
+    let world = headless.app.world_mut();
+    let mut cameras = world.query_filtered::<(Entity, Has<Afterimage>), With<Camera3d>>();
+    let cameras: Vec<_> = cameras.iter(world).collect();
+    for (name, of_world, hides) in [("the world's", true, true), ("all", false, false)] {
+        for &(camera, _) in cameras.iter().filter(|(_, is_world)| *is_world == of_world) {
+            headless.app.world_mut().entity_mut(camera).insert(Hdr);
+        }
         let shots = compare(&mut headless, &targets, name);
-        let found = recorded(headless.app.sub_app_mut(RenderApp).world_mut()).len();
-        assert_eq!(found, foveated, "{name}: foveated cameras");
-        let arms = shots.each_ref().map(|shot| arm_pixels(shot));
-        assert!(!has_arm || arms.iter().all(|&pixels| pixels > 20), "{name}: the arm is missing: {arms:?}");
+        assert_eq!(clears(&shots), [hides; 2], "{name}");
     }
+    for &(camera, _) in &cameras {
+        headless.app.world_mut().entity_mut(camera).remove::<Hdr>();
+    }
+    let shots = compare(&mut headless, &targets, "none again");
+    assert_eq!(clears(&shots), [false; 2]);
 }
 
 #[test]

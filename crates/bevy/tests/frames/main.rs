@@ -103,6 +103,12 @@ fn kind(kind: FoveationKind) -> impl Bundle {
     (aliased(), Foveated { kind, ..default() })
 }
 
+/// MSAA with which cameras are rendered.
+fn rendered_msaa(headless: &mut Headless) -> Vec<Msaa> {
+    let world = headless.app.sub_app_mut(RenderApp).world_mut();
+    world.query::<&Msaa>().iter(world).copied().collect()
+}
+
 /// A gaze that wanders through the frame.
 fn wander(headless: &mut Headless, frame: usize) {
     let t = frame as f32;
