@@ -33,12 +33,12 @@ pub struct ContextDesc {
     /// Whether the output has the color input's alpha (1 where that is not finite) instead of 1. GPU only. Default
     /// true.
     ///
-    /// On planned frames ([`FoveationKind::Quads`](crate::internal::FoveationKind::Quads)) history then has the alpha of its
-    /// samples: 8 bytes a pixel and view, and 8 bytes a pixel of memory traffic. Set it to false if the output's alpha
-    /// is not used. Alpha has the history that color has, so that both converge alike. Where alpha changes and color
-    /// does not, as when something fades with color that is not premultiplied, history is not rejected, and alpha lags:
-    /// give a trust or reactive mask there. The other methods have this frame's alpha, between the samples of planned
-    /// frames a mean of those around.
+    /// On planned frames ([`FoveationKind::Quads`](crate::internal::FoveationKind::Quads)) history then has the alpha
+    /// of its samples: 8 bytes a pixel and view, and 8 bytes a pixel of memory traffic. Set it to false if the output's
+    /// alpha is not used. Alpha has the history that color has, so that both converge alike. Where alpha changes and
+    /// color does not, as when something fades with color that is not premultiplied, history is not rejected, and alpha
+    /// lags: give a trust or reactive mask there. The other methods have this frame's alpha, between the samples of
+    /// planned frames a mean of those around.
     pub keep_alpha: bool,
     /// Whether frames have the albedo of every pixel ([`FrameInputs::albedo`](crate::levels::FrameInputs::albedo)):
     /// then samples show light, and texture is the pixel's own. Only on planned frames

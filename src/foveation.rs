@@ -66,8 +66,8 @@ pub struct Foveation {
     pub kind: FoveationKind,
     /// Diameter of the fovea, the full-rate region, in degrees: 0 to 180, at most `mid_deg`. Default 5.
     pub fovea_deg: f32,
-    /// Diameter of the middle region in degrees: 0 to 180. Default 15. With [`FoveationKind::Quads`] 180 is the whole view,
-    /// even if the gaze is far outside of it.
+    /// Diameter of the middle region in degrees: 0 to 180. Default 15. With [`FoveationKind::Quads`] 180 is the whole
+    /// view, even if the gaze is far outside of it.
     pub mid_deg: f32,
     /// Width in degrees of the linear blend outside the radius of each region: 0 to 90. Default 1.
     pub blend_deg: f32,
@@ -76,13 +76,13 @@ pub struct Foveation {
     /// Block edge in the periphery, outside the middle region, in pixels: a power of two from `rate_mid` to
     /// [`MAX_RATE`](Self::MAX_RATE). Default 16.
     pub rate_far: u32,
-    /// With [`FoveationKind::Quads`]: share of the pixels that are shaded by need in a frame, beside the fovea and the even
-    /// pattern, 0 to 1. With [`noisy`](crate::internal::Settings::noisy) frames it counts paths, of which a pixel may
-    /// get several. Default 0.025.
+    /// With [`FoveationKind::Quads`]: share of the pixels that are shaded by need in a frame, beside the fovea and the
+    /// even pattern, 0 to 1. With [`noisy`](crate::internal::Settings::noisy) frames it counts paths, of which a pixel
+    /// may get several. Default 0.025.
     pub budget: f32,
-    /// With [`FoveationKind::Quads`]: whether one pixel of a chosen quad is shaded, outside the fovea, in place of all four;
-    /// each in turn. For path tracers and compute shaders, which can shade single pixels: four times as many places for
-    /// the same pixels. Default false.
+    /// With [`FoveationKind::Quads`]: whether one pixel of a chosen quad is shaded, outside the fovea, in place of all
+    /// four; each in turn. For path tracers and compute shaders, which can shade single pixels: four times as many
+    /// places for the same pixels. Default false.
     pub single_pixels: bool,
 }
 

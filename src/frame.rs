@@ -86,9 +86,8 @@ impl Exposure {
 /// # #[cfg(feature = "gpu")]
 /// # use afterimage::wgpu;
 /// # #[cfg(feature = "gpu")]
-/// # fn example(color: &wgpu::Texture, depth: &wgpu::Texture, motion: &wgpu::Texture, views: &[afterimage::levels::ViewFrame]) {
-/// use afterimage::levels::Reset;
-/// use afterimage::gpu::Frame;
+/// # fn example(color: &wgpu::Texture, depth: &wgpu::Texture, motion: &wgpu::Texture, views:
+/// &[afterimage::levels::ViewFrame]) { use afterimage::levels::Reset; use afterimage::gpu::Frame;
 ///
 /// let (depth, motion) = (Some(depth.into()), Some(motion.into()));
 /// let after_a_cut = Frame { depth, motion, reset: Reset::All, ..Frame::new(color, views, 0) };

@@ -9,8 +9,8 @@ use crate::image::Image;
 
 /// Checks whether a renderer's frames match a [`ContextDesc`]: motion vectors, depth, colors, gaze and foveation of one
 /// view. Give it some consecutive frames in which the camera moves and the eye looks around. With
-/// [`FoveationKind::Quads`](crate::internal::FoveationKind::Quads), shade them at full rate, without the plan; motion, jitter, depth
-/// and color are checked.
+/// [`FoveationKind::Quads`](crate::internal::FoveationKind::Quads), shade them at full rate, without the plan; motion,
+/// jitter, depth and color are checked.
 ///
 /// ```
 /// use afterimage::cpu::{Doctor, Frame};

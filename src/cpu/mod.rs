@@ -228,10 +228,10 @@ impl CpuAfterimage {
         self.run(frame, output, None, Some(traces), None)
     }
 
-    /// Pixels to shade of a [planned frame](crate::internal::FoveationKind::Quads), one mask a view: quads of 2x2 pixels, or
-    /// [single pixels](crate::internal::Foveation::single_pixels). Give the frame to [`process`](Self::process) with a
-    /// color of the context's size, in which these pixels are shaded. Without history the plan is a quarter of the
-    /// pixels ([`is_quarter`](Self::is_quarter)), unless the foveation shades more.
+    /// Pixels to shade of a [planned frame](crate::internal::FoveationKind::Quads), one mask a view: quads of 2x2
+    /// pixels, or [single pixels](crate::internal::Foveation::single_pixels). Give the frame to
+    /// [`process`](Self::process) with a color of the context's size, in which these pixels are shaded. Without history
+    /// the plan is a quarter of the pixels ([`is_quarter`](Self::is_quarter)), unless the foveation shades more.
     ///
     /// All quads of the fovea are chosen, an even pattern outside it that visits every quad in turn, and at most the
     /// share [`Foveation::budget`](crate::internal::Foveation::budget) of a view's quads where history lacks most.

@@ -389,8 +389,8 @@ impl Afterimage {
     /// ```
     ///
     /// # Errors
-    /// [`FrameError`] if the foveation is not [`Quads`](crate::internal::FoveationKind::Quads), and as for `record`; then
-    /// nothing was recorded.
+    /// [`FrameError`] if the foveation is not [`Quads`](crate::internal::FoveationKind::Quads), and as for `record`;
+    /// then nothing was recorded.
     pub fn plan(&mut self, device: &Device, encoder: &mut CommandEncoder, frame: &Frame<'_>) -> Result<(), FrameError> {
         frame.check_plan(&self.desc)?;
         input::check_geometry(&self.desc, frame)?;
@@ -470,7 +470,7 @@ impl Afterimage {
     }
 
     /// Compiles the pipeline of [`prime`](Self::prime) for the format, samples and near plane of a target, in place of
-    /// the first frame. No effect with filters other than [`FoveationKind::Quads`].
+    /// the first frame. No effect with kinds other than [`FoveationKind::Quads`].
     ///
     /// # Errors
     /// [`FrameError`] if the target does not fit, as for `prime`.
@@ -481,11 +481,12 @@ impl Afterimage {
         Ok(())
     }
 
-    /// The pixels that the last [`plan`](Self::plan) of a frame [shaded by quads](crate::internal::FoveationKind::Quads)
-    /// chose: an `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bits 0 to 3 say which of its pixels
-    /// are shaded, row by row, and bits 8 to 12 how many paths each of them gets, as in
-    /// [`CpuAfterimage::paths`](crate::cpu::CpuAfterimage::paths), with an array layer for each view; usages
-    /// `TEXTURE_BINDING` and `COPY_SRC`. `None` with another filter. Changes of size and settings replace it.
+    /// The pixels that the last [`plan`](Self::plan) of a frame [shaded by
+    /// quads](crate::internal::FoveationKind::Quads) chose: an `R32Uint` texture with a texel for each quad of 2x2
+    /// pixels, whose bits 0 to 3 say which of its pixels are shaded, row by row, and bits 8 to 12 how many paths each
+    /// of them gets, as in [`CpuAfterimage::paths`](crate::cpu::CpuAfterimage::paths), with an array layer for each
+    /// view; usages `TEXTURE_BINDING` and `COPY_SRC`. `None` with another kind. Changes of size and settings replace
+    /// it.
     pub fn quad_mask(&self) -> Option<&Texture> {
         self.quads.as_ref().map(|quads| &quads.quads.mask.texture)
     }
@@ -494,8 +495,8 @@ impl Afterimage {
     /// `INDIRECT` and `COPY_SRC`. 32-bit words: at byte 0 the arguments of `draw_indirect` with 6 vertices and an
     /// instance for each quad, at byte 16 those of `dispatch_workgroups_indirect` with 64 invocations a workgroup and
     /// one for each quad, at byte 28 the number of quads, from byte 32 on the quads, x + 65536 y in quads, in no
-    /// particular order. `None` with another filter than [`Quads`](crate::internal::FoveationKind::Quads). Changes of size and
-    /// settings replace it.
+    /// particular order. `None` with another kind than [`Quads`](crate::internal::FoveationKind::Quads). Changes of
+    /// size and settings replace it.
     pub fn quad_list(&self, view: usize) -> Option<&Buffer> {
         self.quads.as_ref().and_then(|quads| quads.quads.views.get(view)).map(|view| &view.list)
     }

@@ -77,11 +77,11 @@ pub struct Smr {
     pub tolerance: f32,
     /// Whether history is scaled to follow changes of light, instead of being rejected. Default true.
     pub relight: bool,
-    /// Whether planned frames ([`FoveationKind::Quads`](crate::internal::FoveationKind::Quads)) are antialiased: their projection is
-    /// jittered ([`ViewFrame::jitter_px`](crate::internal::ViewFrame::jitter_px), best [`Foveation::jitter_px`]), and
-    /// history stores means of samples instead of single ones. Set it in place of other temporal antialiasing, and only
-    /// for jittered frames. It has no effect on noisy frames, which are averaged in any case, or on other frames.
-    /// Default false.
+    /// Whether planned frames ([`FoveationKind::Quads`](crate::internal::FoveationKind::Quads)) are antialiased: their
+    /// projection is jittered ([`ViewFrame::jitter_px`](crate::internal::ViewFrame::jitter_px), best
+    /// [`Foveation::jitter_px`]), and history stores means of samples instead of single ones. Set it in place of other
+    /// temporal antialiasing, and only for jittered frames. It has no effect on noisy frames, which are averaged in any
+    /// case, or on other frames. Default false.
     pub antialias: bool,
 }
 
@@ -197,9 +197,9 @@ impl Settings {
         Self { method: Method::Smr(Smr::traced()), noisy: true, ..Self::default() }
     }
 
-    /// Antialiased frames shaded by quads ([`FoveationKind::Quads`](crate::internal::FoveationKind::Quads)), for screens about
-    /// 40 degrees wide: a coarser even pattern and twice the budget of [`Foveation::quads`], 11 % of the pixels. Frames
-    /// must be jittered ([`Foveation::jitter_px`]). `docs/quads.md` has the scores.
+    /// Antialiased frames shaded by quads ([`FoveationKind::Quads`](crate::internal::FoveationKind::Quads)), for
+    /// screens about 40 degrees wide: a coarser even pattern and twice the budget of [`Foveation::quads`], 11 % of the
+    /// pixels. Frames must be jittered ([`Foveation::jitter_px`]). `docs/quads.md` has the scores.
     pub fn screen() -> Self {
         let method = Method::Smr(Smr { antialias: true, ..Smr::default() });
         let foveation = Foveation { rate_mid: 8, budget: 0.05, ..Foveation::quads() };

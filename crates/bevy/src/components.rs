@@ -1,7 +1,7 @@
 //! Components of a camera, and the components that these require.
 
 use afterimage::DebugView;
-use afterimage::internal::{FoveationKind, Foveation, Method, Settings};
+use afterimage::internal::{self, Foveation, Method, Settings};
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass};
 use bevy::prelude::*;
 
@@ -131,7 +131,15 @@ impl Foveated {
 
     fn foveation(&self) -> Foveation {
         let Self { fovea_deg, mid_deg, rate_mid, rate_far, budget, .. } = *self;
-        Foveation { kind: FoveationKind::Quads, fovea_deg, mid_deg, rate_mid, rate_far, budget, ..Default::default() }
+        Foveation {
+            kind: internal::FoveationKind::Quads,
+            fovea_deg,
+            mid_deg,
+            rate_mid,
+            rate_far,
+            budget,
+            ..Default::default()
+        }
     }
 }
 

@@ -266,13 +266,14 @@ impl Headset {
         self.set_settings(Settings { foveation, ..self.post.desc().settings })
     }
 
-    /// Changes method and foveation, whose filter must be [`FoveationKind::Quads`], from the next frame on: for comparisons.
+    /// Changes method and foveation, whose kind must be [`FoveationKind::Quads`], from the next frame on: for
+    /// comparisons.
     ///
     /// # Errors
-    /// [`Error::Settings`] if a setting is out of range, or the filter is another one; then nothing changes.
+    /// [`Error::Settings`] if a setting is out of range, or the kind is another one; then nothing changes.
     #[doc(hidden)]
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), Error> {
-        check_filter(&settings)?;
+        check_kind(&settings)?;
         Ok(self.post.set_settings(&self.gpu.device, settings)?)
     }
 
@@ -645,12 +646,12 @@ fn settings(shading: Shading, antialias: bool) -> Result<Settings, SettingsError
 }
 
 /// Refuses what a headset's frames are not.
-fn check_filter(settings: &Settings) -> Result<(), SettingsError> {
+fn check_kind(settings: &Settings) -> Result<(), SettingsError> {
     match settings.foveation.kind {
         FoveationKind::Quads => Ok(()),
-        filter => Err(SettingsError {
-            setting: "filter",
-            found: filter.name().into(),
+        kind => Err(SettingsError {
+            setting: "kind",
+            found: kind.name().into(),
             expected: "quads: Foveation::quads() or Foveation::uniform(share)".into(),
         }),
     }
@@ -691,12 +692,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn filters_without_quads_are_refused() {
-        for filter in FoveationKind::ALL {
-            let foveation = Foveation { kind: filter, ..Foveation::quads() };
-            let found = check_filter(&Settings { foveation, ..Settings::default() }).err();
-            let is_refused = matches!(&found, Some(error) if error.setting == "filter");
-            assert_eq!(is_refused, filter != FoveationKind::Quads, "{filter:?}: {found:?}");
+    fn kinds_without_quads_are_refused() {
+        for kind in FoveationKind::ALL {
+            let foveation = Foveation { kind, ..Foveation::quads() };
+            let found = check_kind(&Settings { foveation, ..Settings::default() }).err();
+            let is_refused = matches!(&found, Some(error) if error.setting == "kind");
+            assert_eq!(is_refused, kind != FoveationKind::Quads, "{kind:?}: {found:?}");
         }
     }
 

@@ -8,7 +8,7 @@ mod show;
 mod space;
 mod stage;
 
-use afterimage::internal::{FoveationKind, Foveation, MethodKind, Settings};
+use afterimage::internal::{Foveation, FoveationKind, MethodKind, Settings};
 use gpu::Gpu;
 use show::{Marks, Show};
 use stage::Stage;

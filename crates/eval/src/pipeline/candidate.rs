@@ -35,8 +35,8 @@ impl<'a> InMemory<'a> {
     }
 }
 
-/// Whether methods need the levels of detail of a simulated frame as an input. `FoveationKind::Block` evaluates the level at
-/// the center of a block, which a method cannot derive from the gaze.
+/// Whether methods need the levels of detail of a simulated frame as an input. `FoveationKind::Block` evaluates the
+/// level at the center of a block, which a method cannot derive from the gaze.
 pub fn needs_lod(filter: FoveationKind) -> bool {
     filter == FoveationKind::Block
 }

@@ -210,7 +210,7 @@ impl Bits<'_> {
     fn settings(&mut self) -> Settings {
         let pick = self.word();
         let foveation = Foveation {
-            filter: [FoveationKind::Mip, FoveationKind::Gauss, FoveationKind::Block, FoveationKind::Off]
+            kind: [FoveationKind::Mip, FoveationKind::Gauss, FoveationKind::Block, FoveationKind::Off]
                 [(pick >> 2 & 3) as usize],
             fovea_deg: self.around(0.0, 20.0),
             mid_deg: self.around(20.0, 60.0),
