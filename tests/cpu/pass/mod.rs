@@ -1,6 +1,7 @@
 //! Whole passes on the CPU: conventions, history rejection, determinism, lifecycle; hard cases H19, H22, H29, H46-H60,
 //! H63, H66, H77-H79, H107, H108.
 
+mod albedo;
 mod alpha;
 mod depth;
 mod filled;

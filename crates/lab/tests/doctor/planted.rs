@@ -193,5 +193,5 @@ pub const PLANTED: [Planted; 24] = [
     planted("foveation: another filter", FoveationFilter, "{ filter: Filter::", |_, d| change_filter(foveation(d))),
     planted("foveation: radii, stated as diameters", FoveationRegions, REGIONS, |_, d| halve_regions(foveation(d))),
     planted("foveation: blocks twice as large", FoveationRates, "rate_mid: ", |_, d| double_rates(foveation(d))),
-    planted("foveation: none", NotFoveated, "{ kind: FoveationKind::Off, ..", show_full_rate),
+    planted("foveation: none", NotFoveated, "{ filter: Filter::Off, ..", show_full_rate),
 ];

@@ -37,7 +37,7 @@ pub fn as_rust(settings: &Settings) -> String {
 
 fn foveation(foveation: &Foveation) -> String {
     Literal::new("Foveation", foveation, &Foveation::default())
-        .field("filter", |f| format!("Filter::{:?}", f.kind))
+        .field("kind", |f| format!("FoveationKind::{:?}", f.kind))
         .field("fovea_deg", |f| format!("{:?}", f.fovea_deg))
         .field("mid_deg", |f| format!("{:?}", f.mid_deg))
         .field("blend_deg", |f| format!("{:?}", f.blend_deg))
