@@ -5,8 +5,8 @@
 //! - [`Tracer`]: [`cpu`] or [`gpu`], which trace the same paths, specialized to the
 //!   [`Effects`](afterimage_lab::scene::effects::Effects) that the scene needs. It adds the samples of [`work::Spans`]
 //!   to a [`film::Film`].
-//! - [`sampling`]: foveated sampling patterns. [`surfaces`]: exact depth and motion, and albedo. [`stereo`]: gaze of two
-//!   eyes. [`head_in_scene`]: a head that looks at surfaces.
+//! - [`sampling`]: foveated sampling patterns. [`surfaces`]: exact depth and motion, and albedo. [`stereo`]: gaze of
+//!   two eyes. [`head_in_scene`]: a head that looks at surfaces.
 //! - [`scene_buffer`]: the scene as one array of `vec4u`, which the GPU tracer reads.
 //! - [`TracedSource`]: frames of a scene. [`measure`]: times of frames.
 

@@ -26,8 +26,8 @@ fn texture([x, y]: [u32; 2], index: u64, patch_px: u32) -> [f32; 3] {
     [hash(0), hash(1), hash(2)]
 }
 
-/// Squared errors of frames of which a tenth is shaded: of the first, which has no history, and of the upper and the lower
-/// half from the eighth on. Surfaces stand still, and so say the vectors.
+/// Squared errors of frames of which a tenth is shaded: of the first, which has no history, and of the upper and the
+/// lower half from the eighth on. Surfaces stand still, and so say the vectors.
 fn errors(has_albedo: bool, patch_px: u32) -> [f64; 3] {
     let method = Method::Smr(Smr { antialias: true, ..Smr::default() });
     let settings = Settings { method, foveation: Foveation::uniform(0.1), ..Settings::default() };
@@ -51,8 +51,8 @@ fn errors(has_albedo: bool, patch_px: u32) -> [f64; 3] {
     errors
 }
 
-/// Vectors do not say that such a texture moves. Samples alone show it as it is; history of it gains less, because a mean
-/// of samples that scatter is kept, as that of fine detail is (docs/albedo.md).
+/// Vectors do not say that such a texture moves. Samples alone show it as it is; history of it gains less, because a
+/// mean of samples that scatter is kept, as that of fine detail is (docs/albedo.md).
 #[test]
 fn a_texture_that_changes_without_vectors_is_better_with_albedo() {
     for patch_px in [2, 4, 8] {

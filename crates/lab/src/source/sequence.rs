@@ -67,8 +67,8 @@ impl SequenceSource {
     ///   [`ExrHeader::open_passes`].
     /// - [`Invalid`](InputError::Invalid): a frame is damaged, truncated or without color or a channel of `names`;
     ///   differs from the first in size, or in whether it has depth, motion or albedo; a frame number is missing, or
-    ///   missing in a pass; several frames have no motion vectors of a known convention; or `cameras.json` is invalid or belongs
-    ///   to other frames.
+    ///   missing in a pass; several frames have no motion vectors of a known convention; or `cameras.json` is invalid
+    ///   or belongs to other frames.
     pub fn open_named(folder: &Path, limits: &ReadLimits, names: &ChannelNames) -> Result<Self, InputError> {
         let name = folder.display().to_string();
         let mut frames = Frames { passes: passes(folder)?, limits: *limits, names: names.clone() };
