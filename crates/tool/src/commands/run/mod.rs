@@ -89,7 +89,7 @@ pub struct RunArgs {
     #[command(flatten)]
     pub method_settings: MethodArgs,
     /// Give smr the albedo of every pixel of planned frames: it interpolates and remembers light, and texture is the
-    /// pixel's own. scene: the surfaces' of a rasterised scene, with --jitter halton; else a layer of EXR frames,
+    /// pixel's own. scene: of the surfaces of a rasterised scene, with --jitter halton; else a layer of EXR frames,
     /// by default one of a known name (docs/renderers.md); off: none
     #[arg(long, value_parser = parse_albedo, value_name = "scene|NAME|off")]
     pub albedo: Option<AlbedoName>,
