@@ -12,8 +12,8 @@ pub(super) static ENTRY: Entry = Entry {
     history: |settings| HistoryLayout::Sparse { noisy: settings.noisy, means: antialiases(settings) },
     history_traffic_bytes: |settings| {
         // Samples of history: 8 bytes read, 8 written. A quarter of the pixels, or fewer, have samples of this frame.
-        // For each of these, history is read (8), and the observation (16) is written and read, and so is the light of
-        // their quad (32).
+        // For each of these, history is read (8), and the observation (16) is written and read, and so is the
+        // rectification at their quad (32).
         let samples = (8 + 16 + 32_u32 / 4).div_ceil(4);
         // The noise of samples (4) and the noise of history (4) are read. The noise of history is written (4).
         2 * 8 + samples + if settings.noisy { 4 + 2 * 4 } else { 0 }

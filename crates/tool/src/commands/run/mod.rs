@@ -91,7 +91,7 @@ pub struct RunArgs {
     /// Give smr the albedo of every pixel of planned frames: it interpolates and remembers light, and texture is the
     /// pixel's own. scene: of the surfaces of a rasterised scene, with --jitter halton; else a layer of EXR frames,
     /// by default one of a known name (docs/renderers.md); off: none
-    #[arg(long, value_parser = parse_albedo, value_name = "scene|NAME|off")]
+    #[arg(long, value_name = "scene|NAME|off")]
     pub albedo: Option<AlbedoName>,
     /// Give the methods a mask of pixels that move without motion vectors, if the scene has one (analytic:scroll)
     #[arg(long)]
@@ -146,13 +146,14 @@ pub enum AlbedoName {
     Off,
 }
 
-#[allow(clippy::unnecessary_wraps, reason = "the form of a parser")]
-fn parse_albedo(text: &str) -> Result<AlbedoName, String> {
-    Ok(match text {
-        "scene" => AlbedoName::Scene,
-        "off" => AlbedoName::Off,
-        layer => AlbedoName::Layer(layer.to_owned()),
-    })
+impl From<&str> for AlbedoName {
+    fn from(text: &str) -> Self {
+        match text {
+            "scene" => Self::Scene,
+            "off" => Self::Off,
+            layer => Self::Layer(layer.to_owned()),
+        }
+    }
 }
 
 impl RunArgs {
