@@ -50,7 +50,8 @@ rm -rf "$copy"
 mkdir -p "$copy/crates/web"
 cp -pr ../../{Cargo.toml,README.md,examples,shaders,src,tests} "$copy"
 cp -pr Cargo.toml Cargo.lock bindgen src shaders "$copy/crates/web"
-for unused in quad_prime_pass 'doctor*' 'resize*' 'taau*' demodulation quad_albedo_pass sparse_albedo; do
+for unused in quad_prime_pass 'doctor*' 'resize*' 'taau*' demodulation quad_albedo_pass quad_observe_albedo_pass \
+    sparse_albedo; do
     for shader in "$copy"/shaders/*/$unused.wgsl; do
         [ -f "$shader" ] || { echo "no shader $unused.wgsl to leave out: build.sh names an old one" >&2; exit 1; }
         : >"$shader"

@@ -7,6 +7,7 @@ const LARGEST_ALBEDO: f32 = 511.0f / ALBEDO_STEPS;
 const ALBEDO_FLOOR: f32 = 0.04;
 const MOST_QUOTIENT: f32 = 4.0;
 const MOST_ALBEDOS: vec2f = vec2f(29.0, 3.0);
+const ALBEDO_CLIP_COST: f32 = 4.0;
 const EXPLAINED: vec2f = vec2f(0.5, 0.1);
 
 // Albedo of a pixel as the renderer wrote it, limited to what is stored; 0 for NaN.
@@ -55,9 +56,14 @@ fn with_luma(a: LumaRanges, c: vec3f, there: vec3f) -> LumaRanges {
     );
 }
 
-// Degree to which albedo explains the contrast of some colors, in [0, 1]. `exposure`: factor on them.
-fn explained(a: LumaRanges, exposure: f32) -> f32 {
-    let roots = sqrt(max(vec4f(a.color, a.lit), vec4f(0.0)) * exposure);
+// Ranges of colors that get an exposure.
+fn exposed_lumas(a: LumaRanges, exposure: f32) -> LumaRanges {
+    return LumaRanges(a.own, a.color * exposure, a.lit * exposure);
+}
+
+// Degree to which albedo explains the contrast of some colors, in [0, 1].
+fn explained(a: LumaRanges) -> f32 {
+    let roots = sqrt(max(vec4f(a.color, a.lit), vec4f(0.0)));
     let contrast = (roots.y - roots.x) * 100.0;
     let left = (roots.w - roots.z) * 100.0;
     return clamp((contrast - left) / (contrast * EXPLAINED.x + EXPLAINED.y), 0.0, 1.0);
@@ -97,7 +103,7 @@ struct AlbedoChange {
 // What the albedo `own` of a pixel between samples changes in its candidate.
 fn candidate_change(sums: AlbedoSums, own: vec4f, has_surface: bool) -> AlbedoChange {
     let mean = sums.sum.xyz * (1.0 / sums.sum.w);
-    let share = select(0.0, explained(sums.lumas, 1.0), has_surface && own.w > 0.0);
+    let share = select(0.0, explained(sums.lumas), has_surface && own.w > 0.0);
     return AlbedoChange(between(mean, own.xyz, share), part(quotient(own.xyz, mean), share));
 }
 
@@ -134,31 +140,42 @@ fn mean_albedo(past: vec3f, own: OwnAlbedo, kept: f32) -> vec3f {
     return clipped + (own.albedo - clipped) * (1.0 / (kept + 1.0));
 }
 
-struct Retextured {
-    shown: vec3f,
+// The one texture that a pixel's colors get before they are compared and blended.
+struct Texture {
+    albedo: vec3f,
     stored: vec3f,
+    explained: f32,
+    kept: f32,
+}
+
+// The mean of this texture in all frames. `count`: number of albedos in history's mean.
+fn texture_of(own: OwnAlbedo, past: PastAlbedo, count: f32) -> Texture {
+    let outside = abs(past.kept - min(max(past.kept, own.lowest), own.highest));
+    let kept = count * (1.0 - min(max(max(outside.x, outside.y), outside.z) * ALBEDO_CLIP_COST, 1.0));
+    return Texture(mean_albedo(past.shown, own, kept), mean_albedo(past.kept, own, kept), past.explained, kept);
+}
+
+// Factor on a color of the albedo `of_color` that gets a texture.
+fn textured(texture: Texture, of_color: vec3f) -> vec3f {
+    return part(quotient(texture.albedo, of_color), texture.explained);
+}
+
+// What a pixel's texture changes in the color that it stores.
+struct Retextured {
+    factor: vec3f,
     place_share: f32,
     word: u32,
 }
 
-// A result with the mean of this texture in all frames, as far as that is explained.
-fn retextured(
-    own: OwnAlbedo,
-    past: PastAlbedo,
-    of_shown: vec3f,
-    of_stored: vec3f,
-    kept: f32,
-    count: f32,
-    up: f32,
-) -> Retextured {
-    let goal = between(of_stored, mean_albedo(past.kept, own, kept), past.explained);
+// The color to store, whose albedo was `of_color` before it got the texture.
+fn retextured(texture: Texture, of_color: vec3f, count: f32, up: f32) -> Retextured {
+    let goal = between(of_color, texture.stored, texture.explained);
     let word = pack_albedo(goal, count, up);
     // The color follows the rounding of its albedo.
-    let stored = mean_albedo(past.kept, own, kept) + (unpack_albedo(word).xyz - goal);
+    let stored = texture.stored + (unpack_albedo(word).xyz - goal);
     return Retextured(
-        part(quotient(mean_albedo(past.shown, own, kept), of_shown), past.explained),
-        part(quotient(stored, of_stored), past.explained),
-        past.explained * (1.0 / (kept + 1.0)),
+        part(quotient(stored, texture.albedo), texture.explained),
+        texture.explained * (1.0 / (texture.kept + 1.0)),
         word,
     );
 }

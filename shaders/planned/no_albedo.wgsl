@@ -13,9 +13,12 @@ struct PastAlbedos {
     none: u32,
 }
 
+struct PixelTexture {
+    none: u32,
+}
+
 struct Retextured {
-    shown: vec3f,
-    stored: vec3f,
+    factor: vec3f,
     place_share: f32,
     word: u32,
 }
@@ -58,17 +61,44 @@ fn with_shown(a: PastAlbedos, around: AroundStored) -> PastAlbedos {
     return a;
 }
 
-// No change.
-fn retexture(
+// No texture.
+fn pixel_texture(
     px: vec2u,
     view: u32,
     level: u32,
     at_edge: bool,
-    of_candidate: vec3f,
     past: PastAlbedos,
     history: Interpolated,
+    is_usable: bool,
+    c: vec3f,
+    of_sample: vec3f,
+) -> PixelTexture {
+    return PixelTexture();
+}
+
+// The same.
+fn of_sample(given: PixelTexture) -> PixelTexture {
+    return given;
+}
+
+// History as it is.
+fn of_history(given: PixelTexture, history: Interpolated) -> Interpolated {
+    return history;
+}
+
+// No factor.
+fn on_sample(given: PixelTexture) -> vec3f {
+    return vec3f(1.0);
+}
+
+// No change.
+fn retexture(
+    px: vec2u,
+    view: u32,
+    given: PixelTexture,
     result: Reconstructed,
-    count: f32,
+    is_new: bool,
+    samples: f32,
 ) -> Retextured {
     return Retextured();
 }

@@ -24,12 +24,20 @@ fn observe(px: vec2u, view: u32) -> vec2u {
         source.previous.at -= frame.views[view].jitter_px;
     }
     // At a silhouette the difference does not say whether anything changed.
-    let comparable = color(sample_at(px, view).xyz).usable && !surface.is_silhouette;
+    let sampled = color(sample_at(px, view).xyz);
+    let comparable = sampled.usable && !surface.is_silhouette;
     let needed = may_have_history(source.previous) && comparable;
     let found = sparse_history(source, view, needed, past_albedos(px, view));
-    let history = found.interpolated;
+    var history = found.interpolated;
     if !needed || history.lod < 0.0 {
         return nothing;
+    }
+    if HAS_ALBEDO {
+        // History is compared with the texture of the sample.
+        let of_own = with_change(sample_albedos(px, view), true, true).albedo;
+        let at_edge = surface.is_edge;
+        let texture = pixel_texture(px, view, level, at_edge, found.albedos, history, true, sampled.color, of_own);
+        history = of_history(of_sample(texture), history);
     }
     let contrast = root_difference(history.lowest, history.highest);
     let compared = comparison(found, contrast, surface.motion);

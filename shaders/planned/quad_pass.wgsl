@@ -88,10 +88,7 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
     candidate.is_beside = is_beside(sums);
     if HAS_ALBEDO {
         albedos = with_change(albedos, is_own, has_surface(sums));
-        candidate.color *= albedos.factor;
-        candidate.lowest *= albedos.factor;
-        candidate.highest *= albedos.factor;
-        candidate.beside *= albedos.factor;
+        candidate = times(candidate, albedos.factor);
         candidate.albedos = albedos;
     }
     if NOISY != 0u {

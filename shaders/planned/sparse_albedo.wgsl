@@ -124,31 +124,80 @@ fn with_shown(a: PastAlbedos, around: AroundStored) -> PastAlbedos {
     return next;
 }
 
-// What a pixel's own albedo changes in its result, and the word to store. `at_edge`: whether it is at an edge of a
-// surface; `count`: number of samples in its mean.
-fn retexture(
+// The texture of a pixel's colors, and the albedos that they had before.
+struct PixelTexture {
+    texture: Texture,
+    // Albedo of the sample or candidate.
+    of_sample: vec3f,
+    // Of history.
+    past: PastAlbedo,
+    // Whether the pixel's albedo is known.
+    is_known: bool,
+}
+
+// The texture of a pixel's colors. `at_edge`: whether it is at an edge of a surface; `is_usable`, `c`, `of_sample`:
+// whether this frame has a color for it, that color, and its albedo.
+fn pixel_texture(
     px: vec2u,
     view: u32,
     level: u32,
     at_edge: bool,
-    of_candidate: vec3f,
     past: PastAlbedos,
     history: Interpolated,
-    result: Reconstructed,
-    count: f32,
-) -> Retextured {
-    let own = own_albedo(px, view, past.own.xyz);
-    let kept_albedo = unpack_albedo(past.kept);
-    let is_outside = level > 0u && history.lod >= 0.0;
+    is_usable: bool,
+    c: vec3f,
+    of_sample: vec3f,
+) -> PixelTexture {
     let is_known = past.is_known && past.own.w > 0.0;
+    let own = own_albedo(px, view, past.own.xyz);
+    let kept = unpack_albedo(past.kept);
+    var lumas = exposed_lumas(past.lumas, frame.exposure);
+    if is_usable {
+        lumas = with_luma(lumas, c, of_sample);
+    }
     // At an edge history mixes surfaces, and one albedo does not explain the colors of several.
-    let share = select(0.0, explained(past.lumas, frame.exposure), is_outside && is_known && !at_edge);
-    let found = past_albedo(own, past.shown, kept_albedo.xyz, share);
-    let old = select(found.shown, found.kept, result.keeps_nearest);
-    let of_shown = between(of_candidate, found.shown, result.share);
-    let of_stored = between(of_candidate, old, result.stored_share);
-    let kept = kept_albedos(kept_albedo.w, result.stored.place_px);
-    let albedos = select(0.0, select(count, kept + 1.0, is_outside), past.own.w > 0.0);
+    let is_explained = level > 0u && history.lod >= 0.0 && is_known && !at_edge;
+    let of_past = past_albedo(own, past.shown, kept.xyz, select(0.0, explained(lumas), is_explained));
+    let texture = texture_of(own, of_past, kept_albedos(kept.w, history.nearest.place_px));
+    return PixelTexture(texture, of_sample, of_past, past.own.w > 0.0);
+}
+
+// With the texture of the sample as it is.
+fn of_sample(given: PixelTexture) -> PixelTexture {
+    var next = given;
+    next.texture.albedo = given.of_sample;
+    return next;
+}
+
+// History with a texture.
+fn of_history(given: PixelTexture, history: Interpolated) -> Interpolated {
+    let factor = textured(given.texture, given.past.shown);
+    var next = history;
+    next.color *= factor;
+    next.lowest *= factor;
+    next.highest *= factor;
+    next.nearest.color *= textured(given.texture, given.past.kept);
+    return next;
+}
+
+// Factor on the sample or candidate.
+fn on_sample(given: PixelTexture) -> vec3f {
+    return textured(given.texture, given.of_sample);
+}
+
+// What the texture changes in the color that the pixel stores. `is_new`: whether the pixel has no history or is in the
+// fovea; its albedo is then a mean of as many as it has `samples`.
+fn retexture(
+    px: vec2u,
+    view: u32,
+    given: PixelTexture,
+    result: Reconstructed,
+    is_new: bool,
+    samples: f32,
+) -> Retextured {
+    let old = select(given.past.shown, given.past.kept, result.keeps_nearest);
+    let of_color = between(given.of_sample, old, result.stored_share);
+    let count = select(0.0, select(given.texture.kept + 1.0, samples, is_new), given.is_known);
     let up = unit_draw(bits(px.x, px.y, frame.frame_low, frame.views[view].key));
-    return retextured(own, found, of_shown, of_stored, kept, albedos, up);
+    return retextured(given.texture, of_color, count, up);
 }

@@ -42,6 +42,16 @@ fn no_candidate() -> Candidate {
     return none;
 }
 
+// A candidate with a factor on its colors.
+fn times(given: Candidate, factor: vec3f) -> Candidate {
+    var candidate = given;
+    candidate.color *= factor;
+    candidate.lowest *= factor;
+    candidate.highest *= factor;
+    candidate.beside *= factor;
+    return candidate;
+}
+
 // Whether the samples around a pixel tell the color at its centre: in the fovea of jittered frames.
 fn is_centred_at(view: u32, level: u32, candidate: Candidate) -> bool {
     return ANTIALIAS != 0u && candidate.is_own && level == 0u && surrounds_centre(frame.views[view].jitter_px);
@@ -227,7 +237,7 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candi
     let source = sparse_source(px, view, surface);
     let is_final = given.usable && level == 0u && NOISY == 0u && ANTIALIAS == 0u;
     let needed = may_have_history(source.previous) && !is_final;
-    let past = sparse_history(source, view, needed, past_albedos(px, view));
+    var past = sparse_history(source, view, needed, past_albedos(px, view));
     let has_history = past.interpolated.lod >= 0.0;
     let verdict = select(source.previous.verdict, VERDICT_VALID, has_history);
     count_pixel(px, view, given.usable, disparity_now, verdict);
@@ -243,6 +253,17 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candi
         candidate.noise = borrowed.noise;
     }
 
+    var texture: PixelTexture;
+    if HAS_ALBEDO {
+        let history = past.interpolated;
+        let usable = candidate.usable;
+        let of_candidate = candidate.albedos.albedo;
+        let at_edge = surface.is_edge;
+        texture = pixel_texture(px, view, level, at_edge, past.albedos, history, usable, candidate.color, of_candidate);
+        past.interpolated = of_history(texture, history);
+        candidate = times(candidate, on_sample(texture));
+    }
+
     var pixel = candidate_alone(view, level, candidate, near);
     if has_history {
         if candidate.usable {
@@ -254,28 +275,17 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candi
     }
     pixel.result.stored.disparity = surface.stored_disparity;
 
-    var shown = pixel.result.color;
     var albedo_word = 0u;
     if HAS_ALBEDO {
-        let texture = retexture(
-            px,
-            view,
-            level,
-            surface.is_edge,
-            candidate.albedos.albedo,
-            past.albedos,
-            past.interpolated,
-            pixel.result,
-            pixel.mean.samples,
-        );
+        let is_new = level == 0u || !has_history;
+        let retextured = retexture(px, view, texture, pixel.result, is_new, pixel.mean.samples);
         let place_px = pixel.result.stored.place_px;
-        shown *= texture.shown;
-        pixel.result.stored.color *= texture.stored;
-        pixel.result.stored.place_px += (-frame.views[view].jitter_px - place_px) * texture.place_share;
-        albedo_word = texture.word;
+        pixel.result.stored.color *= retextured.factor;
+        pixel.result.stored.place_px += (-frame.views[view].jitter_px - place_px) * retextured.place_share;
+        albedo_word = retextured.word;
     }
     // Means of colors may exceed the largest half.
-    shown = clamp(shown, vec3f(-MAX_HALF), vec3f(MAX_HALF));
+    let shown = clamp(pixel.result.color, vec3f(-MAX_HALF), vec3f(MAX_HALF));
 
     let share = pixel.result.share;
     count_if(verdict == VERDICT_VALID && share == 0.0, COUNT_REPLACED);

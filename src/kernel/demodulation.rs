@@ -26,6 +26,9 @@ const ALBEDO_FLOOR: f32 = 0.04;
 const MOST_QUOTIENT: f32 = 4.0;
 /// Largest number of albedos in a mean, and in one that is read between its texels.
 const MOST_ALBEDOS: [f32; 2] = [29.0, 3.0];
+/// Cost of a clip of history's albedo to those around: the share of its albedos that a mean loses, per clip distance. A
+/// clip by a quarter costs all.
+const ALBEDO_CLIP_COST: f32 = 4.0;
 /// Contrast that albedo must explain in full: a share of the colors' contrast, and a constant (100 from black to
 /// white).
 const EXPLAINED: [f32; 2] = [0.5, 0.1];
@@ -85,10 +88,16 @@ pub fn with_luma(ranges: LumaRanges, color: Vec3, there: Vec3) -> LumaRanges {
     LumaRanges { color: widened(ranges.color, light), lit: widened(ranges.lit, lit), ..ranges }
 }
 
-/// Degree to which albedo explains the contrast of some colors, in \[0, 1\]. `exposure`: factor on them.
+/// Ranges of colors that get an exposure.
 #[inline]
-pub fn explained(ranges: LumaRanges, exposure: f32) -> f32 {
-    let root = |v: f32| (v.max(0.0) * exposure).sqrt();
+pub fn exposed_lumas(ranges: LumaRanges, exposure: f32) -> LumaRanges {
+    LumaRanges { color: ranges.color * exposure, lit: ranges.lit * exposure, ..ranges }
+}
+
+/// Degree to which albedo explains the contrast of some colors, in \[0, 1\].
+#[inline]
+pub fn explained(ranges: LumaRanges) -> f32 {
+    let root = |v: f32| v.max(0.0).sqrt();
     let contrast = (root(ranges.color.y) - root(ranges.color.x)) * 100.0;
     let left = (root(ranges.lit.y) - root(ranges.lit.x)) * 100.0;
     ((contrast - left) / (contrast * EXPLAINED[0] + EXPLAINED[1])).clamp(0.0, 1.0)
@@ -154,7 +163,7 @@ impl AlbedoChange {
 #[inline]
 pub fn candidate_change(sums: AlbedoSums, own: Vec4, has_surface: bool) -> AlbedoChange {
     let mean = sums.sum.truncate() * (1.0 / sums.sum.w);
-    let explained = if has_surface && own.w > 0.0 { explained(sums.lumas, 1.0) } else { 0.0 };
+    let explained = if has_surface && own.w > 0.0 { explained(sums.lumas) } else { 0.0 };
     let own = own.truncate();
     AlbedoChange { albedo: between(mean, own, explained), factor: part(quotient(own, mean), explained) }
 }
@@ -203,40 +212,61 @@ pub fn mean_albedo(past: Vec3, own: OwnAlbedo, kept: f32) -> Vec3 {
     clipped + (own.albedo - clipped) * (1.0 / (kept + 1.0))
 }
 
-/// What a pixel's own texture changes in its result.
+/// The one texture that a pixel's colors get before they are compared and blended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Texture {
+    /// Its albedo.
+    pub albedo: Vec3,
+    /// Albedo to store.
+    pub stored: Vec3,
+    /// Degree to which albedo explains the contrast of the colors.
+    pub explained: f32,
+    /// Number of albedos that history's mean keeps.
+    pub kept: f32,
+}
+
+/// The mean of this texture in all frames. `count`: number of albedos in history's mean. A mean outside of the albedos
+/// around is of another texture, and loses them.
+#[inline]
+pub fn texture_of(own: OwnAlbedo, past: PastAlbedo, count: f32) -> Texture {
+    let outside = past.kept - past.kept.max(own.around[0]).min(own.around[1]);
+    let kept = count * (1.0 - (outside.abs().max_element() * ALBEDO_CLIP_COST).min(1.0));
+    Texture {
+        albedo: mean_albedo(past.shown, own, kept),
+        stored: mean_albedo(past.kept, own, kept),
+        explained: past.explained,
+        kept,
+    }
+}
+
+/// Factor on a color of the albedo `of_color` that gets a texture.
+#[inline]
+pub fn textured(texture: Texture, of_color: Vec3) -> Vec3 {
+    part(quotient(texture.albedo, of_color), texture.explained)
+}
+
+/// What a pixel's texture changes in the color that it stores.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Retextured {
-    /// Factor on the color to show.
-    pub shown: Vec3,
-    /// Factor on the color to store.
-    pub stored: Vec3,
+    /// Factor on the color.
+    pub factor: Vec3,
     /// Share of this frame's place in that of the stored sample.
     pub place_share: f32,
     /// Word of the stored color's albedo ([`pack_albedo`]).
     pub word: u32,
 }
 
-/// A result with the mean of this texture in all frames, as far as that is explained. `of_colors`: albedos of the
-/// colors to show and to store; `kept`: number of albedos that history's mean keeps; `count`: number to store; `up`:
+/// The color to store, whose albedo was `of_color` before it got the texture. `count`: number of albedos to store; `up`:
 /// uniform in \[0, 1).
 #[inline]
-pub fn retextured(
-    own: OwnAlbedo,
-    past: PastAlbedo,
-    of_colors: [Vec3; 2],
-    kept: f32,
-    count: f32,
-    up: f32,
-) -> Retextured {
-    let [of_shown, of_stored] = of_colors;
-    let target = between(of_stored, mean_albedo(past.kept, own, kept), past.explained);
+pub fn retextured(texture: Texture, of_color: Vec3, count: f32, up: f32) -> Retextured {
+    let target = between(of_color, texture.stored, texture.explained);
     let word = pack_albedo(target, count, up);
     // The color follows the rounding of its albedo: errors do not add up.
-    let stored = mean_albedo(past.kept, own, kept) + (unpack_albedo(word).truncate() - target);
+    let stored = texture.stored + (unpack_albedo(word).truncate() - target);
     Retextured {
-        shown: part(quotient(mean_albedo(past.shown, own, kept), of_shown), past.explained),
-        stored: part(quotient(stored, of_stored), past.explained),
-        place_share: past.explained * (1.0 / (kept + 1.0)),
+        factor: part(quotient(stored, texture.albedo), texture.explained),
+        place_share: texture.explained * (1.0 / (texture.kept + 1.0)),
         word,
     }
 }

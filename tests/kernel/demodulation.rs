@@ -1,8 +1,9 @@
 //! Albedo of planned frames: quotients, what they explain, means, and their storage.
 
 use afterimage::kernel::demodulation::{
-    OwnAlbedo, add_albedo, candidate_change, explained, given_albedo, mean_albedo, no_albedos, no_lumas, pack_albedo,
-    part, past_albedo, quotient, retextured, unpack_albedo, with_luma,
+    OwnAlbedo, PastAlbedo, Texture, add_albedo, candidate_change, explained, exposed_lumas, given_albedo, mean_albedo,
+    no_albedos, no_lumas, pack_albedo, part, past_albedo, quotient, retextured, texture_of, textured, unpack_albedo,
+    with_luma,
 };
 use glam::{Vec3, Vec4};
 use proptest::prelude::*;
@@ -55,8 +56,9 @@ proptest! {
         let factor = quotient(given, stored);
         prop_assert!(factor.min_element() >= 0.25 && factor.max_element() <= 4.0);
         let past = past_albedo(flat(given), stored, stored, 1.0);
-        let result = retextured(flat(given), past, [stored; 2], 3.0, 4.0, up);
-        prop_assert!(result.shown.is_finite() && result.stored.is_finite() && result.place_share <= 0.25);
+        let texture = texture_of(flat(given), past, 3.0);
+        let result = retextured(texture, stored, 4.0, up);
+        prop_assert!(textured(texture, stored).is_finite() && result.factor.is_finite() && result.place_share <= 1.0);
     }
 
     /// Bit for bit: samples, and history whose stored albedos differ by their rounding.
@@ -69,8 +71,10 @@ proptest! {
         prop_assert_eq!(candidate_change(sums, own, true).factor, Vec3::ONE);
         let [shown, kept] = [0, 1].map(|i| unpack_albedo(pack_albedo(a, 2.0, draws[i])).truncate());
         let past = past_albedo(flat(a), shown, kept, 1.0);
-        let result = retextured(flat(a), past, [shown, kept], 7.0, 8.0, draws[2]);
-        prop_assert_eq!((result.shown, result.stored, result.place_share), (Vec3::ONE, Vec3::ONE, 0.0));
+        let texture = texture_of(flat(a), past, 7.0);
+        prop_assert_eq!([shown, kept].map(|of_color| textured(texture, of_color)), [Vec3::ONE; 2]);
+        let result = retextured(texture, kept, 8.0, draws[2]);
+        prop_assert_eq!((result.factor, result.place_share), (Vec3::ONE, 0.0));
     }
 
     /// Light that is the same everywhere under a texture: the pixel's color is that light times its albedo.
@@ -84,7 +88,7 @@ proptest! {
             .fold(no_albedos(own), |s, a| add_albedo(s, own.extend(1.0), a.extend(1.0), lit(*a), 0.25));
         let change = candidate_change(sums, own.extend(1.0), true);
         // A faint contrast is not explained in full.
-        prop_assume!(explained(sums.lumas, 1.0) == 1.0);
+        prop_assume!(explained(sums.lumas) == 1.0);
         let mean = others.iter().map(|a| lit(*a)).sum::<Vec3>() / 4.0;
         let off = (mean * change.factor - lit(own)).abs().max_element();
         prop_assert!(off <= 1e-4, "off by {off}");
@@ -98,8 +102,9 @@ proptest! {
             let sums = [c, d].iter().fold(no_albedos(own.truncate()), |s, c| add_albedo(s, own, there, *c, 0.5));
             prop_assert_eq!(candidate_change(sums, own, true).factor, Vec3::ONE);
         }
-        let result = retextured(flat(a), past_albedo(flat(a), c, d, 0.0), [a, a], 3.0, 0.0, up);
-        prop_assert_eq!((result.shown, result.stored, result.word), (Vec3::ONE, Vec3::ONE, 0));
+        let texture = texture_of(flat(a), past_albedo(flat(a), c, d, 0.0), 3.0);
+        let result = retextured(texture, a, 0.0, up);
+        prop_assert_eq!((textured(texture, a), result.factor, result.word), (Vec3::ONE, Vec3::ONE, 0));
     }
 
     /// Errors do not add up: after a frame the color has the texture that is stored beside it.
@@ -107,10 +112,33 @@ proptest! {
     fn a_stored_color_follows_the_rounding_of_its_albedo(a in albedo(), own in albedo(), up in 0.0_f32..1.0) {
         prop_assume!((a - own).abs().max_element() > 0.01);
         let own = OwnAlbedo { albedo: own, around: [a.min(own), a.max(own)] };
-        let past = past_albedo(own, a, a, 1.0);
-        let result = retextured(own, past, [a, a], 7.0, 8.0, up);
-        let expected = quotient(unpack_albedo(result.word).truncate(), a);
-        prop_assert!((result.stored / expected - 1.0).abs().max_element() < 1e-5);
+        let texture = texture_of(own, past_albedo(own, a, a, 1.0), 7.0);
+        let result = retextured(texture, a, 8.0, up);
+        let expected = quotient(unpack_albedo(result.word).truncate(), texture.albedo);
+        prop_assert!((result.factor / expected - 1.0).abs().max_element() < 1e-5);
+    }
+
+    /// Light that stays under a texture that changes: history of the old one shows the new one at once.
+    #[test]
+    fn another_texture_replaces_the_mean_of_the_last_one(
+        a in moderate(), own in moderate(), light in 0.2_f32..2.0, count in 1.0_f32..29.0,
+    ) {
+        prop_assume!((a - own).abs().max_element() > 0.1);
+        let past = PastAlbedo { shown: a, kept: a, explained: 1.0 };
+        let texture = texture_of(flat(own), past, count);
+        prop_assert_eq!(texture, Texture { albedo: own, stored: own, explained: 1.0, kept: 0.0 });
+        let off = ((a + 0.04) * light * textured(texture, a) - (own + 0.04) * light).abs().max_element();
+        prop_assert!(off <= 1e-5, "off by {off}");
+    }
+
+    /// Stored colors are of another exposure than those of this frame, with which they are compared.
+    #[test]
+    fn an_exposure_is_no_contrast(albedos in [moderate(), moderate()], exposure in 0.1_f32..10.0) {
+        let [a, b] = albedos;
+        let stored = with_luma(no_lumas(a), (a + 0.04) / exposure, a);
+        let ranges = with_luma(exposed_lumas(stored, exposure), b + 0.04, b);
+        let [low, high] = ranges.lit.to_array();
+        prop_assert!((high - low) <= 1e-5 * high, "{ranges:?}");
     }
 }
 
@@ -129,7 +157,7 @@ fn contrast_is_explained_by_albedo_alone() {
     let [dark, bright] = [Vec3::splat(0.1), Vec3::splat(0.6)];
     let of = |colors: [Vec3; 2], albedos: [Vec3; 2]| {
         let ranges = [0, 1].iter().fold(no_lumas(dark), |r, &i| with_luma(r, colors[i], albedos[i]));
-        explained(ranges, 1.0)
+        explained(ranges)
     };
     assert_eq!(of([dark + 0.04, bright + 0.04], [dark, bright]), 1.0);
     assert_eq!(of([dark, bright], [dark, dark]), 0.0);

@@ -3,12 +3,12 @@
 
 use super::view::View;
 use crate::kernel::demodulation::{
-    LumaRanges, OwnAlbedo, Retextured, between, explained, given_albedo, kept_albedos, limited_albedo, no_lumas,
-    past_albedo, retextured, unpack_albedo, with_luma,
+    LumaRanges, OwnAlbedo, PastAlbedo, Retextured, Texture, between, explained, exposed_lumas, given_albedo,
+    kept_albedos, limited_albedo, no_lumas, past_albedo, retextured, texture_of, textured, unpack_albedo, with_luma,
 };
 use crate::kernel::reconstruction::Reconstructed;
 use crate::kernel::rng;
-use crate::kernel::stored_sample::{Around, StoredSample, interpolate, stored_weight};
+use crate::kernel::stored_sample::{Around, Interpolated, StoredSample, interpolate, stored_weight};
 use glam::{Vec2, Vec3, Vec4};
 
 /// Pixels beside one, as offsets from the pixel above and left of it.
@@ -58,18 +58,42 @@ impl PastAlbedos {
     }
 }
 
-/// A pixel's candidate, history and result, whose texture becomes its own.
-pub(super) struct Untextured {
-    pub px: [u32; 2],
-    pub level: u32,
-    /// Whether it is at an edge of a surface.
-    pub at_edge: bool,
-    /// Albedo of the candidate.
-    pub of_candidate: Vec3,
-    pub past: Option<PastAlbedos>,
-    pub result: Reconstructed,
-    /// Number of samples in the mean.
-    pub samples: f32,
+/// The texture of a pixel's colors, and the albedos that they had before.
+pub(super) struct PixelTexture {
+    pub texture: Texture,
+    /// Albedo of the sample or candidate.
+    of_sample: Vec3,
+    /// Of history.
+    past: PastAlbedo,
+    /// Whether the pixel's albedo is known.
+    is_known: bool,
+}
+
+impl PixelTexture {
+    /// History with this texture.
+    #[inline(always)]
+    pub fn of_history(&self, history: Interpolated) -> Interpolated {
+        let factor = textured(self.texture, self.past.shown);
+        let nearest = history.nearest;
+        Interpolated {
+            color: history.color * factor,
+            range: history.range.map(|color| color * factor),
+            nearest: StoredSample { color: nearest.color * textured(self.texture, self.past.kept), ..nearest },
+            ..history
+        }
+    }
+
+    /// With the texture of the sample as it is.
+    #[inline(always)]
+    pub fn of_sample(self) -> Self {
+        Self { texture: Texture { albedo: self.of_sample, ..self.texture }, ..self }
+    }
+
+    /// Factor on the sample or candidate.
+    #[inline(always)]
+    pub fn on_sample(&self) -> Vec3 {
+        textured(self.texture, self.of_sample)
+    }
 }
 
 impl View<'_> {
@@ -119,33 +143,49 @@ impl View<'_> {
         })
     }
 
-    /// What the pixel's own albedo changes in its result, and the word to store; `None` in frames without.
+    /// The texture of a pixel's colors; `None` in frames without albedo. `at_edge`: whether it is at an edge of a
+    /// surface; `history` and `past`: its history, if it has one, and the albedos of that; `sample`: color of this
+    /// frame, and its albedo, if there is one.
     #[inline(always)]
-    pub(super) fn retexture(&self, pixel: &Untextured) -> Option<Retextured> {
-        let past = match pixel.past {
-            Some(past) => past,
-            None => self.past_albedos(pixel.px)?,
-        };
-        let own = self.own_albedo(pixel.px, past.own.truncate());
-        let kept_albedo = unpack_albedo(past.kept);
-        let is_outside = pixel.level > 0 && pixel.past.is_some();
+    pub(super) fn texture(
+        &self,
+        px: [u32; 2],
+        level: u32,
+        at_edge: bool,
+        history: Option<&Interpolated>,
+        past: Option<PastAlbedos>,
+        sample: Option<(Vec3, Vec3)>,
+    ) -> Option<PixelTexture> {
+        let past = past.or_else(|| self.past_albedos(px))?;
+        let nearest_px = history.map_or(Vec2::ZERO, |history| history.nearest.place_px);
         let is_known = past.is_known && past.own.w > 0.0;
+        let own = self.own_albedo(px, past.own.truncate());
+        let kept = unpack_albedo(past.kept);
+        let lumas = exposed_lumas(past.lumas, self.inputs.exposure);
+        let lumas = sample.map_or(lumas, |(color, albedo)| with_luma(lumas, color, albedo));
         // At an edge history mixes surfaces, and one albedo does not explain the colors of several.
-        let share =
-            if is_outside && is_known && !pixel.at_edge { explained(past.lumas, self.inputs.exposure) } else { 0.0 };
-        let found = past_albedo(own, past.shown, kept_albedo.truncate(), share);
-        let result = &pixel.result;
-        let old = if result.keeps_nearest { found.kept } else { found.shown };
-        let of_shown = between(pixel.of_candidate, found.shown, result.share);
-        let of_stored = between(pixel.of_candidate, old, result.stored_share);
-        let kept = kept_albedos(kept_albedo.w, result.stored.place_px);
-        let count = match (past.own.w > 0.0, is_outside) {
-            (false, _) => 0.0,
-            (true, true) => kept + 1.0,
-            (true, false) => pixel.samples,
-        };
-        let [x, y] = pixel.px;
+        let share = if level > 0 && history.is_some() && is_known && !at_edge { explained(lumas) } else { 0.0 };
+        let of_past = past_albedo(own, past.shown, kept.truncate(), share);
+        let texture = texture_of(own, of_past, kept_albedos(kept.w, nearest_px));
+        let of_sample = sample.map_or(Vec3::ZERO, |(_, albedo)| albedo);
+        Some(PixelTexture { texture, of_sample, past: of_past, is_known: past.own.w > 0.0 })
+    }
+
+    /// What the texture changes in the color that the pixel stores. `samples`: number of samples in its mean, if it has
+    /// no history or is in the fovea.
+    #[inline(always)]
+    pub(super) fn retextured(
+        &self,
+        [x, y]: [u32; 2],
+        pixel: &PixelTexture,
+        result: &Reconstructed,
+        samples: Option<f32>,
+    ) -> Retextured {
+        let PixelTexture { texture, of_sample, past, is_known } = *pixel;
+        let old = if result.keeps_nearest { past.kept } else { past.shown };
+        let of_color = between(of_sample, old, result.stored_share);
+        let count = if is_known { samples.unwrap_or(texture.kept + 1.0) } else { 0.0 };
         let up = rng::unit_draw(rng::bits(x, y, self.frame_low, self.inputs.uniforms.key));
-        Some(retextured(own, found, [of_shown, of_stored], kept, count, up))
+        retextured(texture, of_color, count, up)
     }
 }

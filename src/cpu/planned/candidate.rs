@@ -77,11 +77,16 @@ impl Candidate {
     /// With the texture of the pixel's own albedo.
     #[inline(always)]
     pub fn textured(self, albedo: AlbedoChange) -> Self {
+        Self { albedo, ..self.times(albedo.factor) }
+    }
+
+    /// With a factor on its colors.
+    #[inline(always)]
+    pub fn times(self, factor: Vec3) -> Self {
         Self {
-            color: self.color * albedo.factor,
-            range: self.range.map(|color| color * albedo.factor),
-            beside: self.beside.map(|color| color * albedo.factor),
-            albedo,
+            color: self.color * factor,
+            range: self.range.map(|color| color * factor),
+            beside: self.beside.map(|color| color * factor),
             ..self
         }
     }

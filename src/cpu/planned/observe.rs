@@ -24,10 +24,14 @@ impl View<'_> {
             let [x, y] = self.inputs.uniforms.jitter_px;
             source.previous.at = [source.previous.at[0] - x, source.previous.at[1] - y];
         }
-        let Found { history, noise: past, mean, .. } = self.interpolated(&source, None, &mut NoNotes);
-        if history.lod < 0.0 {
+        let found = self.interpolated(&source, self.past_albedos(px), &mut NoNotes);
+        if found.history.lod < 0.0 {
             return None;
         }
+        let own = self.albedo_at(px).truncate();
+        let Found { history, noise: past, mean, albedos, .. } = found;
+        let texture = self.texture(px, level, surface.is_edge, Some(&history), albedos, Some((sampled, own)));
+        let history = texture.map_or(history, |texture| texture.of_sample().of_history(history));
         let [low, high] = history.range;
         let contrast = root_difference(low, high);
         let mut error = if self.antialiases {

@@ -1,6 +1,5 @@
 //! Reconstruction of pixels from history, and from the samples around them.
 
-use super::albedo::Untextured;
 use super::candidate::Candidate;
 use super::quad_samples::RectifiedQuads;
 use super::sparse_history::{Found, Source, Surroundings};
@@ -63,7 +62,7 @@ impl RectifiedView<'_> {
             .ok()
             .filter(|_| !is_final)
             .map(|source| view.interpolated(source, view.past_albedos([x, y]), notes));
-        let history = history.filter(|found| found.history.lod >= 0.0);
+        let mut history = history.filter(|found| found.history.lod >= 0.0);
         let verdict = match &source {
             Err(verdict) => *verdict,
             Ok(Source { is_same: false, .. }) if history.is_none() => Verdict::Disoccluded,
@@ -72,6 +71,14 @@ impl RectifiedView<'_> {
         inputs.count(x, y, candidate.usable, disparity, verdict, stats);
         if view.is_noisy && candidate.is_own {
             candidate = candidate.borrowing(history.as_ref().map_or(0.0, |found| found.noise.samples));
+        }
+
+        let sample = candidate.usable.then_some((candidate.color, candidate.albedo.albedo));
+        let (past, albedos) = history.as_ref().map_or((None, None), |found| (Some(&found.history), found.albedos));
+        let texture = view.texture([x, y], level, surface.is_edge, past, albedos, sample);
+        if let Some(texture) = &texture {
+            history = history.map(|found| Found { history: texture.of_history(found.history), ..found });
+            candidate = candidate.times(texture.on_sample());
         }
 
         let is_near = view.antialiases && candidate.is_own && level == 0;
@@ -86,25 +93,15 @@ impl RectifiedView<'_> {
         };
         pixel.result.stored.disparity = surface.stored;
         let Resolved { result, mean, noise, alpha, fit } = pixel;
-        let (mut output, mut stored, share) = (result.color, result.stored, result.share);
-        let albedos = history.and_then(|past| past.albedos);
-        let (of_candidate, samples) = (candidate.albedo.albedo, mean.samples);
-        let retextured = view.retexture(&Untextured {
-            px: [x, y],
-            level,
-            at_edge: surface.is_edge,
-            of_candidate,
-            past: albedos,
-            result,
-            samples,
-        });
+        let (output, mut stored, share) = (result.color, result.stored, result.share);
+        let samples = (level == 0 || history.is_none()).then_some(mean.samples);
+        let retextured = texture.map(|texture| view.retextured([x, y], &texture, &result, samples));
         if let Some(texture) = retextured {
-            output *= texture.shown;
-            stored.color *= texture.stored;
+            stored.color *= texture.factor;
             stored.place_px += (view.sample_place_px() - stored.place_px) * texture.place_share;
         }
         // Means of colors may exceed the largest half.
-        output = output.clamp(Vec3::splat(-sanitize::MAX_HALF), Vec3::splat(sanitize::MAX_HALF));
+        let output = output.clamp(Vec3::splat(-sanitize::MAX_HALF), Vec3::splat(sanitize::MAX_HALF));
         stats.replaced += u64::from(verdict == Verdict::Valid && share == 0.0);
         let trace = PixelTrace {
             verdict,

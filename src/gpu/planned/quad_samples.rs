@@ -20,8 +20,9 @@ pub(crate) struct QuadSamplePasses {
 
 impl QuadSamplePasses {
     pub fn new(device: &Device, desc: &ContextDesc, sources: &Sources) -> Self {
+        let observe = if desc.has_albedo { "quad_observe_albedo_pass" } else { "quad_observe_pass" };
         Self {
-            observe: sources.shader(device, "quad_observe_pass"),
+            observe: sources.shader(device, observe),
             rectify: sources.shader(device, "quad_rectify_pass"),
             rectified: rectified(desc).create(device),
         }

@@ -100,27 +100,46 @@ fn albedo_that_is_the_same_everywhere_changes_nothing() {
 fn wrong_albedo_is_caught() {
     let planted = [
         ("let word = extra_word(texel, view);", "let word = extra_word(first, view);"),
-        ("candidate.color *= albedos.factor;", ""),
-        ("candidate.lowest *= albedos.factor;", ""),
-        ("candidate.beside *= albedos.factor;", ""),
-        ("shown *= texture.shown;", ""),
-        ("pixel.result.stored.color *= texture.stored;", ""),
-        ("* texture.place_share;", "* 0.0;"),
+        ("candidate = times(candidate, albedos.factor);", ""),
+        ("candidate.lowest *= factor;", ""),
+        ("candidate.beside *= factor;", ""),
+        ("past.interpolated = of_history(texture, history);", ""),
+        ("candidate = times(candidate, on_sample(texture));", ""),
+        ("next.nearest.color *= textured(given.texture, given.past.kept);", ""),
+        ("lumas = with_luma(lumas, c, of_sample);", ""),
+        ("exposed_lumas(past.lumas, frame.exposure)", "past.lumas"),
+        ("pixel.result.stored.color *= retextured.factor;", ""),
+        ("* retextured.place_share;", "* 0.0;"),
         ("vec4u(albedo_word, 0u, 0u, 0u)", "vec4u(0u)"),
-        ("select(found.shown, found.kept, result.keeps_nearest)", "found.shown"),
+        ("select(given.past.shown, given.past.kept, result.keeps_nearest)", "given.past.shown"),
         ("level > 0u && history.lod >= 0.0", "history.lod >= 0.0"),
         ("past.is_known && past.own.w > 0.0", "past.own.w > 0.0"),
-        ("is_outside && is_known && !at_edge", "is_outside && is_known"),
-        ("select(count, kept + 1.0, is_outside), past.own.w > 0.0)", "select(count, kept + 1.0, is_outside), true)"),
+        ("is_known && !at_edge", "is_known"),
+        (
+            "select(given.texture.kept + 1.0, samples, is_new), given.is_known",
+            "select(given.texture.kept + 1.0, samples, is_new), true",
+        ),
         ("let at = clamp(px + offset, vec2u(1u), frame.size) - 1u;", "let at = px;"),
         ("texel_of(at, view, ALBEDO_IN)", "at"),
         ("select(a.kept, word, is_nearest)", "word"),
         ("albedos = with_shown(albedos, around);", ""),
         ("texel_of(px, view, ALBEDO_IN)", "px"),
     ];
-    rig::all_caught_in(["quad_albedo_pass"], with_albedo(desc()), settings(true), FRAMES, &planted, |index, rig| {
-        (reset_of(index, rig), frame(index))
-    });
+    let observed = [
+        (
+            "let texture = pixel_texture(px, view, level, at_edge, found.albedos",
+            "let texture = pixel_texture(px, view, 0u, at_edge, found.albedos",
+        ),
+        ("history = of_history(of_sample(texture), history);", ""),
+        ("of_history(of_sample(texture), history)", "of_history(texture, history)"),
+        ("sampled.color, of_own", "vec3f(0.0), of_own"),
+    ];
+    let passes = [("quad_albedo_pass", &planted[..]), ("quad_observe_albedo_pass", &observed[..])];
+    for (pass, planted) in passes {
+        rig::all_caught_in([pass], with_albedo(desc()), settings(true), FRAMES, planted, |index, rig| {
+            (reset_of(index, rig), frame(index))
+        });
+    }
 }
 
 /// An albedo without `has_albedo`, none with it, settings that have no use for it, and alpha beside it.

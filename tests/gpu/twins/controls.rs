@@ -72,6 +72,7 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ("demodulation::add_albedo", "select(own.xyz, there.xyz, there.w > 0.0)", "there.xyz"),
     ("demodulation::past_albedo", "> 1.0f / ALBEDO_STEPS", "> 2.0f / ALBEDO_STEPS"),
     ("demodulation::pack_albedo", "* ALBEDO_STEPS + up", "* ALBEDO_STEPS + 0.5"),
+    ("demodulation::texture_of", "* ALBEDO_CLIP_COST", "* 3.9"),
     ("demodulation::retextured", "(unpack_albedo(word).xyz - goal)", "vec3f(0.0)"),
     ("antialias::clip", "max(abs(by.x), abs(by.y))", "abs(by.x)"),
 ];

@@ -9,7 +9,8 @@ shape!(demodulation::AlbedoSums { sum: Vec4, lumas: demodulation::LumaRanges });
 shape!(demodulation::AlbedoChange { albedo: Vec3, factor: Vec3 });
 shape!(demodulation::OwnAlbedo { albedo: Vec3, around: [Vec3; 2] });
 shape!(demodulation::PastAlbedo { shown: Vec3, kept: Vec3, explained: f32 });
-shape!(demodulation::Retextured { shown: Vec3, stored: Vec3, place_share: f32, word: u32 });
+shape!(demodulation::Texture { albedo: Vec3, stored: Vec3, explained: f32, kept: f32 });
+shape!(demodulation::Retextured { factor: Vec3, place_share: f32, word: u32 });
 
 /// Albedos.
 fn push_albedo(d: &mut Draws, row: &mut Vec<u32>) {
@@ -74,6 +75,11 @@ const ADDED: &str = "let first = add_albedo(no_albedos($0.xyz), $0, vec4f(in_f(4
 const ALBEDO: Word = Of(push_albedo);
 const GIVEN: Word = Of(push_given);
 const LUMAS: Word = Of(push_lumas);
+const TEXTURE: Word = Of(|d, row| {
+    push_albedo(d, row);
+    push_albedo(d, row);
+    row.extend([range(d, 0.0, 1.0), range(d, 0.0, 29.0)]);
+});
 const COLOR: Word = Of(|d, row| row.extend(color(d)));
 
 pub const PROBES: &[Probe] = &[
@@ -92,7 +98,8 @@ pub const PROBES: &[Probe] = &[
     probe!(demodulation::no_lumas, |rows| rows.each(&[ALBEDO])),
     probe!(demodulation::no_albedos, |rows| rows.each(&[ALBEDO])),
     probe!(demodulation::with_luma, |rows| rows.each(&[LUMAS, COLOR, ALBEDO])),
-    probe!(demodulation::explained, |rows| rows.each(&[LUMAS, F(0.25, 4.0)])),
+    probe!(demodulation::explained, |rows| rows.each(&[LUMAS])),
+    probe!(demodulation::exposed_lumas, |rows| rows.each(&[LUMAS, F(0.25, 4.0)])),
     probe!(demodulation::part, |rows| rows.each(&[F(0.25, 4.0), F(0.25, 4.0), F(0.25, 4.0), F(0.0, 1.0)])),
     probe!(demodulation::between, |rows| rows.each(&[ALBEDO, ALBEDO, F(0.0, 1.0)])),
     probe!(demodulation::add_albedo, added, ADDED, |rows| {
@@ -105,19 +112,9 @@ pub const PROBES: &[Probe] = &[
     }),
     probe!(demodulation::kept_albedos, |rows| rows.each(&[F(0.0, 31.0), F(-1.2, 1.2), F(-1.2, 1.2)])),
     probe!(demodulation::mean_albedo, |rows| rows.each(&[ALBEDO, Of(push_own), F(0.0, 29.0)])),
-    probe!(demodulation::retextured, |rows| {
-        rows.each(&[
-            Of(push_own),
-            ALBEDO,
-            ALBEDO,
-            F(0.0, 1.0),
-            ALBEDO,
-            ALBEDO,
-            F(0.0, 29.0),
-            F(0.0, 30.0),
-            F(0.0, 0.9999),
-        ])
-    }),
+    probe!(demodulation::texture_of, |rows| { rows.each(&[Of(push_own), ALBEDO, ALBEDO, F(0.0, 1.0), F(0.0, 29.0)]) }),
+    probe!(demodulation::textured, |rows| rows.each(&[TEXTURE, ALBEDO])),
+    probe!(demodulation::retextured, |rows| rows.each(&[TEXTURE, ALBEDO, F(0.0, 30.0), F(0.0, 0.9999)])),
     probe!(demodulation::pack_albedo, |rows| rows.each(&[ALBEDO, F(-1.0, 31.0), F(0.0, 0.9999)])),
     probe!(demodulation::unpack_albedo, |rows| rows.cross(&[&words()]).each(&[Bits])),
 ];
