@@ -1,4 +1,6 @@
+//#use color
 //#use rng
+//#use sanitize
 // Twin of src/kernel/quads.rs, which documents the functions.
 
 const IN_FOVEA: u32 = 0u;
@@ -44,6 +46,22 @@ fn in_pattern(x: u32, y: u32, step_quads: u32, offset: vec2u) -> bool {
 // blocks a frame.
 fn in_turn(x: u32, y: u32, step_quads: u32, turn: u32) -> bool {
     return (((x / step_quads) ^ (y / step_quads) ^ turn) & 1u) == 0u;
+}
+
+// The even pattern of a frame, outside the fovea: quads from one of its quads to the next, in the middle region and in
+// the periphery; places of its quads in their blocks; and which half of the blocks the periphery shades.
+struct EvenPattern {
+    steps: vec2u,
+    middle: vec2u,
+    periphery: vec2u,
+    turn: u32,
+}
+
+// Whether a frame shades quad (`x`, `y`) whatever its history: all in the fovea, those of the pattern elsewhere.
+fn is_even(pattern: EvenPattern, x: u32, y: u32, region_now: u32) -> bool {
+    let is_near = in_pattern(x, y, pattern.steps.x, pattern.middle);
+    let is_far = in_pattern(x, y, pattern.steps.y, pattern.periphery) && in_turn(x, y, pattern.steps.y, pattern.turn);
+    return region_now == IN_FOVEA || select(is_far, is_near, region_now == IN_MIDDLE);
 }
 
 // The pixel of quad (`x`, `y`) that is tested in a frame: each of the four in four frames.
@@ -96,6 +114,38 @@ fn need(lod: f32, samples: f32, contrast: f32) -> f32 {
     let single = limited + FEW_CONTRAST;
     let few = (single * single) * (FEW_ERROR / (samples * (samples + 1.0)));
     return coarse * coarse + select(0.0, few, samples < ENOUGH_SAMPLES);
+}
+
+// What the stored samples around a pixel's previous position say about its need: of the nearest one its squared distance
+// in pixels, color, level of detail (negative without any) and number of samples; smallest and largest color of all.
+struct PastAround {
+    nearest_px2: f32,
+    color: vec3f,
+    lod: f32,
+    samples: f32,
+    lowest: vec3f,
+    highest: vec3f,
+}
+
+// No stored sample.
+fn no_past() -> PastAround {
+    return PastAround(MAX_HALF, vec3f(0.0), -1.0, ENOUGH_SAMPLES, vec3f(MAX_HALF), vec3f(0.0));
+}
+
+// With a stored sample at a squared distance from the position.
+fn with_past(around: PastAround, c: vec3f, lod: f32, samples: f32, px2: f32) -> PastAround {
+    let lowest = min(around.lowest, c);
+    let highest = max(around.highest, c);
+    if px2 < around.nearest_px2 {
+        return PastAround(px2, c, lod, samples, lowest, highest);
+    }
+    return PastAround(around.nearest_px2, around.color, around.lod, around.samples, lowest, highest);
+}
+
+// Need of the pixel; negative without a stored sample.
+fn need_around(around: PastAround) -> f32 {
+    let contrast = root_difference(around.lowest, around.highest);
+    return select(need(around.lod, around.samples, contrast), -1.0, around.lod < 0.0);
 }
 
 // Share of a squared error that counts at `e_deg` degrees from the gaze.

@@ -32,48 +32,36 @@ fn need_at(px: vec2u, view: u32) -> PixelNeed {
     let moved_px = moved_px_at(px, view, disparity_now, motion);
     let at = vec2f(px) + motion;
     let first = floor(at);
-    var nearest_px2 = 0x1p126;
-    var lod = -1.0;
-    var samples = ENOUGH_SAMPLES;
+    var around = no_past();
     var past = Noise(1.0, 0.0);
-    var past_luma = 0.0;
     var noises = NoiseSum(0.0, 0.0, 0.0);
-    var lowest = vec3f(MAX_COLOR);
-    var highest = vec3f(0.0);
     let taps = select(0u, 4u, is_valid);
     for (var tap = 0u; tap < taps; tap++) {
         let texel = first + vec2f(vec2u(tap & 1u, tap >> 1u));
         let words = stored_words(vec2i(texel), view);
         if !is_empty(words) && is_reusable(words, codes, moved_px) {
             let stored = unpack_full(words);
-            lowest = min(lowest, stored.color);
-            highest = max(highest, stored.color);
-            var noise_here = Noise(1.0, 0.0);
-            if NOISY != 0u {
-                noise_here = stored_noise(vec2i(texel), view);
-                noises = add_noise(noises, noise_here, 1.0);
-            }
             let offset = texel - at;
             let px2 = offset.x * offset.x + offset.y * offset.y;
-            if px2 < nearest_px2 {
-                nearest_px2 = px2;
-                lod = stored.lod;
-                if ANTIALIAS != 0u {
-                    let mean = mean_of(stored.lod);
-                    lod = mean.lod;
-                    samples = mean.samples;
+            if NOISY != 0u {
+                let noise_here = stored_noise(vec2i(texel), view);
+                noises = add_noise(noises, noise_here, 1.0);
+                if px2 < around.nearest_px2 {
+                    past = noise_here;
                 }
-                past = noise_here;
-                past_luma = luma(expose(stored.color, frame.exposure));
             }
+            var mean = Mean(stored.lod, ENOUGH_SAMPLES, 0.0, 0.0);
+            if ANTIALIAS != 0u {
+                mean = mean_of(stored.lod);
+            }
+            around = with_past(around, stored.color, mean.lod, mean.samples, px2);
         }
     }
-    let needed = need(lod, samples, root_difference(lowest, highest));
-    var found = PixelNeed(select(needed, -1.0, lod < 0.0), 0.0, 1u);
-    if NOISY != 0u && lod >= 0.0 {
+    var found = PixelNeed(need_around(around), 0.0, 1u);
+    if NOISY != 0u && around.lod >= 0.0 {
         // The variance of few samples is uncertain: the mean of all four takes its place.
         past.variance = mean_noise(noises).variance;
-        found.noise = noise_need(past, past_luma);
+        found.noise = noise_need(past, luma(expose(around.color, frame.exposure)));
         found.samples = known_samples(past.samples);
     }
     return found;
@@ -94,15 +82,10 @@ fn is_seen_quad(quad: vec2u, view: u32) -> bool {
     return seen;
 }
 
-// Whether the even pattern of the frame has a quad.
-fn is_even(quad: vec2u, region_now: u32) -> bool {
+// The even pattern of the frame.
+fn even_pattern() -> EvenPattern {
     let steps = vec2u(1u << (u32(frame.lod_mid) - 1u), 1u << (u32(frame.lod_far) - 1u));
-    if region_now == IN_MIDDLE {
-        return in_pattern(quad.x, quad.y, steps.x, frame.pattern_px.xy / 2u);
-    }
-    return region_now == IN_FOVEA
-        || (in_pattern(quad.x, quad.y, steps.y, frame.pattern_px.zw / 2u)
-            && in_turn(quad.x, quad.y, steps.y, frame.frame_low & 1u));
+    return EvenPattern(steps, frame.pattern_px.xy / 2u, frame.pattern_px.zw / 2u, frame.frame_low & 1u);
 }
 
 fn block(at: vec2u, view: u32) {
@@ -119,7 +102,7 @@ fn block(at: vec2u, view: u32) {
         }
         let e_deg = region_angle_deg(ray_at(2u * quad, view), frame.views[view].gaze_ray);
         let region_now = region(e_deg, frame.fovea_radius_deg, frame.mid_radius_deg);
-        var even = is_seen_quad(quad, view) && is_even(quad, region_now);
+        var even = is_seen_quad(quad, view) && is_even(even_pattern(), quad.x, quad.y, region_now);
         let is_single = frame.single_pixels != 0u && region_now != IN_FOVEA;
         if is_single {
             let alone = 2u * quad + vec2u(even_place(region_now) & 1u, even_place(region_now) >> 1u);
@@ -155,10 +138,10 @@ fn block(at: vec2u, view: u32) {
         if any(quad >= quads) {
             continue;
         }
-        let is_even = (words[i] & 0x10000u) != 0u;
+        let even = (words[i] & 0x10000u) != 0u;
         let needed = needs[i] * share_in_block(needs, i) + noise_needs[i];
         let view_key = frame.views[view].key;
-        let key = quad_key(select(needed, 0.0, is_even), quad.x, quad.y, frame.frame_low, view_key);
+        let key = quad_key(select(needed, 0.0, even), quad.x, quad.y, frame.frame_low, view_key);
         if key > 0u {
             atomicAdd(&state.counts[key], 1u);
         }

@@ -8,7 +8,10 @@
 //! error that a sample is expected to bring. All quads whose key reaches a threshold are shaded. A histogram of the
 //! keys gives the threshold, without sorting and without exceeding the budget.
 
+use super::color::root_difference;
 use super::rng;
+use super::sanitize::MAX_HALF;
+use glam::Vec3;
 
 /// Region of the fovea: every quad is shaded.
 pub const IN_FOVEA: u32 = 0;
@@ -93,6 +96,31 @@ pub fn in_turn(x: u32, y: u32, step: u32, turn: u32) -> bool {
     ((x / step) ^ (y / step) ^ turn) & 1 == 0
 }
 
+/// The even pattern of a frame, outside the fovea.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EvenPattern {
+    /// Quads from one of its quads to the next, in the middle region and in the periphery: powers of two.
+    pub steps: [u32; 2],
+    /// Place of its quads in their blocks in the middle region.
+    pub middle: [u32; 2],
+    /// The same in the periphery.
+    pub periphery: [u32; 2],
+    /// Which half of the blocks the periphery shades: 0 or 1.
+    pub turn: u32,
+}
+
+/// Whether a frame shades quad (`x`, `y`) whatever its history: all in the fovea, those of the pattern elsewhere.
+#[inline]
+pub fn is_even(pattern: EvenPattern, x: u32, y: u32, region: u32) -> bool {
+    let [middle, periphery] = pattern.steps;
+    let is_far = in_pattern(x, y, periphery, pattern.periphery) && in_turn(x, y, periphery, pattern.turn);
+    match region {
+        IN_FOVEA => true,
+        IN_MIDDLE => in_pattern(x, y, middle, pattern.middle),
+        _ => is_far,
+    }
+}
+
 /// The pixel of quad (`x`, `y`) that is tested in a frame: each of the four in four frames. Neighbouring quads
 /// alternate.
 #[inline]
@@ -157,6 +185,55 @@ pub fn need(lod: f32, samples: f32, contrast: f32) -> f32 {
     let single = contrast + FEW_CONTRAST;
     let few = (single * single) * (FEW_ERROR / (samples * (samples + 1.0)));
     coarse * coarse + if samples < ENOUGH_SAMPLES { few } else { 0.0 }
+}
+
+/// What the stored samples around a pixel's previous position say about its [`need`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PastAround {
+    /// Squared distance of the nearest one in pixels.
+    pub nearest_px2: f32,
+    /// Its color.
+    pub color: Vec3,
+    /// Its level of detail; negative without any.
+    pub lod: f32,
+    /// Its number of samples.
+    pub samples: f32,
+    /// Smallest color of all.
+    pub lowest: Vec3,
+    /// Largest one.
+    pub highest: Vec3,
+}
+
+/// No stored sample.
+#[inline]
+pub fn no_past() -> PastAround {
+    let lowest = Vec3::splat(MAX_HALF);
+    PastAround {
+        nearest_px2: MAX_HALF,
+        color: Vec3::ZERO,
+        lod: -1.0,
+        samples: ENOUGH_SAMPLES,
+        lowest,
+        highest: Vec3::ZERO,
+    }
+}
+
+/// With a stored sample at a squared distance from the position.
+#[inline]
+pub fn with_past(around: PastAround, color: Vec3, lod: f32, samples: f32, px2: f32) -> PastAround {
+    let (lowest, highest) = (around.lowest.min(color), around.highest.max(color));
+    if px2 < around.nearest_px2 {
+        PastAround { nearest_px2: px2, color, lod, samples, lowest, highest }
+    } else {
+        PastAround { lowest, highest, ..around }
+    }
+}
+
+/// [`need`] of the pixel; negative without a stored sample.
+#[inline]
+pub fn need_around(around: PastAround) -> f32 {
+    let contrast = root_difference(around.lowest, around.highest);
+    if around.lod < 0.0 { -1.0 } else { need(around.lod, around.samples, contrast) }
 }
 
 /// Share of a squared error that counts at `e_deg` degrees from the gaze.

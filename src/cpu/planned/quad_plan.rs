@@ -10,22 +10,19 @@ use crate::cpu::quads::Quads;
 use crate::foveation::Foveation;
 use crate::frame::Reset;
 use crate::image::Image;
-use crate::kernel::antialias::mean_of;
-use crate::kernel::color::expose;
-use crate::kernel::color::luma;
-use crate::kernel::color::root_difference;
+use crate::kernel::antialias::{Mean, mean_of};
+use crate::kernel::color::{expose, luma};
 use crate::kernel::noise::{Noise, NoiseSum, add_noise, mean_noise, noise_need};
 use crate::kernel::pack::tap_codes;
 use crate::kernel::quads::{
-    ENOUGH_SAMPLES, IN_FOVEA, IN_MIDDLE, IN_PERIPHERY, KEYS, MOST_PATHS, WHOLE, acuity, in_pattern, in_turn,
-    known_samples, need, no_history_need, path_key, paths, place_in_quad, probed_px, quad_key, region, share_in_block,
-    threshold,
+    ENOUGH_SAMPLES, EvenPattern, IN_FOVEA, IN_MIDDLE, IN_PERIPHERY, KEYS, MOST_PATHS, WHOLE, acuity, is_even,
+    known_samples, need_around, no_history_need, no_past, path_key, paths, place_in_quad, probed_px, quad_key, region,
+    share_in_block, threshold, with_past,
 };
 use crate::kernel::sanitize;
 use crate::kernel::stored_sample::{is_empty, unpack_full};
 use crate::method::HistoryLayout;
 use crate::notes::NoNotes;
-use glam::Vec3;
 
 /// Whether a frame shades one pixel of each quad, because nothing is known of its predecessor.
 pub(crate) fn is_quarter(desc: &ContextDesc, history: &History, frame: &Frame<'_>) -> bool {
@@ -83,7 +80,7 @@ impl View<'_> {
         let even = Image::from_fn_parallel(size, |quad| {
             let region = regions.at(quad[0] as usize, quad[1] as usize);
             let alone = (foveation.single_pixels && region != IN_FOVEA).then(|| pattern.place(region));
-            self.is_visible_quad(quad, alone) && pattern.has(quad, region)
+            self.is_visible_quad(quad, alone) && is_even(pattern.quads, quad[0], quad[1], region)
         });
         let first = Foveation::first_quad(index);
         let has_budget = foveation.budget > 0.0;
@@ -182,42 +179,42 @@ impl View<'_> {
         let moved_px = inputs.moved_px([x, y], disparity, motion);
         let at = [x as f32 + motion[0], y as f32 + motion[1]];
         let first = at.map(|v| v.floor());
-        let mut best = (f32::MAX, -1.0, ENOUGH_SAMPLES);
-        let mut nearest = ([0; 2], Vec3::ZERO);
+        let mut around = no_past();
+        let mut nearest = [0; 2];
         let mut noises = NoiseSum::default();
-        let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::ZERO);
         for tap in 0..4 {
             let [tx, ty] = [first[0] + (tap & 1) as f32, first[1] + (tap >> 1) as f32];
-            let words = self.stored_words(tx as i32, ty as i32);
+            let texel = [tx as i32, ty as i32];
+            let words = self.stored_words(texel[0], texel[1]);
             if is_empty(words) || !self.is_reusable(words, codes, moved_px) {
                 continue;
             }
             let stored = unpack_full(words);
-            (low, high) = (low.min(stored.color), high.max(stored.color));
-            if self.is_noisy {
-                noises = add_noise(noises, self.stored_noise([tx as i32, ty as i32]), 1.0);
-            }
             let px2 = (tx - at[0]) * (tx - at[0]) + (ty - at[1]) * (ty - at[1]);
-            if px2 < best.0 {
-                nearest = ([tx as i32, ty as i32], stored.color);
-                let mean = mean_of(stored.lod);
-                best = if self.antialiases { (px2, mean.lod, mean.samples) } else { (px2, stored.lod, ENOUGH_SAMPLES) };
+            if self.is_noisy {
+                noises = add_noise(noises, self.stored_noise(texel), 1.0);
             }
+            if px2 < around.nearest_px2 {
+                nearest = texel;
+            }
+            let mean = match self.antialiases {
+                true => mean_of(stored.lod),
+                false => Mean { lod: stored.lod, samples: ENOUGH_SAMPLES, ..Mean::ONE },
+            };
+            around = with_past(around, stored.color, mean.lod, mean.samples, px2);
         }
-        if best.1 < 0.0 {
+        let first = need_around(around);
+        if first < 0.0 {
             return None;
         }
-        if self.is_noisy {
-            let (texel, color) = nearest;
-            let own = self.stored_noise(texel);
-            // The variance of few samples is uncertain: the mean of all four takes its place.
-            let past = Noise { variance: mean_noise(noises).variance, ..own };
-            let noise = noise_need(past, luma(expose(color, self.inputs.exposure)));
-            let first = need(best.1, ENOUGH_SAMPLES, root_difference(low, high));
-            return Some(Need { first, noise, samples: known_samples(own.samples) });
+        if !self.is_noisy {
+            return Some(Need { first, noise: 0.0, samples: 1 });
         }
-        let first = need(best.1, best.2, root_difference(low, high));
-        Some(Need { first, noise: 0.0, samples: 1 })
+        let own = self.stored_noise(nearest);
+        // The variance of few samples is uncertain: the mean of all four takes its place.
+        let past = Noise { variance: mean_noise(noises).variance, ..own };
+        let noise = noise_need(past, luma(expose(around.color, inputs.exposure)));
+        Some(Need { first, noise, samples: known_samples(own.samples) })
     }
 }
 
@@ -248,32 +245,24 @@ struct PathKeys {
 
 /// The even pattern of a frame.
 struct Pattern {
-    /// Distance of its quads in quads, in the middle region and in the periphery.
-    steps: [u32; 2],
-    offsets: [[u32; 2]; 2],
-    /// Numbers of its pixels in their quads.
+    quads: EvenPattern,
+    /// Numbers of its pixels in their quads, in the middle region and in the periphery.
     places: [u32; 2],
-    turn: u32,
 }
 
 impl Pattern {
     fn new(foveation: &Foveation, index: u64) -> Self {
-        let steps = [foveation.rate_mid, foveation.rate_far].map(|rate| rate / 2);
         let [mid_x, mid_y, far_x, far_y] = foveation.pattern_px(index);
-        let offsets = [[mid_x / 2, mid_y / 2], [far_x / 2, far_y / 2]];
-        let places = [place_in_quad([mid_x, mid_y]), place_in_quad([far_x, far_y])];
-        Self { steps, offsets, places, turn: (index & 1) as u32 }
+        let quads = EvenPattern {
+            steps: [foveation.rate_mid, foveation.rate_far].map(|rate| rate / 2),
+            middle: [mid_x / 2, mid_y / 2],
+            periphery: [far_x / 2, far_y / 2],
+            turn: (index & 1) as u32,
+        };
+        Self { quads, places: [place_in_quad([mid_x, mid_y]), place_in_quad([far_x, far_y])] }
     }
 
     fn place(&self, region: u32) -> u32 {
         self.places[usize::from(region != IN_MIDDLE)]
-    }
-
-    fn has(&self, [x, y]: [u32; 2], region: u32) -> bool {
-        match region {
-            IN_FOVEA => true,
-            IN_MIDDLE => in_pattern(x, y, self.steps[0], self.offsets[0]),
-            _ => in_pattern(x, y, self.steps[1], self.offsets[1]) && in_turn(x, y, self.steps[1], self.turn),
-        }
     }
 }

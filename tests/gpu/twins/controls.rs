@@ -40,6 +40,8 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ("noise::add_noise", "(weight * weight) / n.samples", "weight / n.samples"),
     ("lens::is_visible", "f32(x) - f32(y)", "f32(y) - f32(x)"),
     ("quads::no_history_need", "LATER_SHARE * NO_HISTORY_NEED", "NO_HISTORY_NEED"),
+    ("quads::is_even", "pattern.steps.y, pattern.turn", "pattern.steps.x, pattern.turn"),
+    ("quads::with_past", "px2 < around.nearest_px2", "px2 > around.nearest_px2"),
     ("quads::octant_offsets", "(5 * rows + 1) / 2", "5 * rows / 2"),
     ("candidate::sample_weight", "select(OTHER_SURFACE, 1.0, same)", "1.0"),
     ("candidate::add_sample", "same && px2", "px2"),

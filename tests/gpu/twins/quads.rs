@@ -16,11 +16,30 @@ fn offset(d: &mut Draws, row: &mut Vec<u32>) {
     row.extend([if (x, y) == (0, 0) { 1 } else { x } as u32, y as u32]);
 }
 
+shape!(quads::EvenPattern { steps: [u32; 2], middle: [u32; 2], periphery: [u32; 2], turn: u32 });
+shape!(quads::PastAround { nearest_px2: f32, color: Vec3, lod: f32, samples: f32, lowest: Vec3, highest: Vec3 });
+
+const STORED: Word = Of(|d, row| {
+    row.push(range(d, 0.0, 2.0));
+    row.extend([0; 3].map(|_| range(d, 0.0, 4.0)));
+    row.extend([range(d, -1.0, 4.0), range(d, 1.0, 29.0)]);
+    row.extend([0; 6].map(|_| range(d, 0.0, 4.0)));
+});
+
 pub const PROBES: &[Probe] = &[
     probe!(quads::region, |rows| {
         rows.cross(&[&floats(&[0.0, 2.5, 7.0, 90.0]), &floats(&[0.0, 2.5]), &floats(&[0.0, 2.5, 7.5])])
     }),
     probe!(quads::in_turn, |rows| { rows.each(&[N(64), N(64), Of(|d, row| row.push(1 << (d.bits() % 3))), N(2)]) }),
+    probe!(quads::is_even, |rows| {
+        let step = |d: &mut Draws, row: &mut Vec<u32>| row.extend([0; 2].map(|_| 1 << (d.bits() % 3)));
+        rows.each(&[Of(step), N(2), N(2), N(2), N(2), N(2), N(64), N(64), N(3)])
+    }),
+    probe!(quads::no_past, |rows| rows.each(&[])),
+    probe!(quads::with_past, |rows| {
+        rows.each(&[STORED, F(0.0, 4.0), F(0.0, 4.0), F(0.0, 4.0), F(-1.0, 4.0), F(1.0, 29.0), F(0.0, 2.0)])
+    }),
+    probe!(quads::need_around, |rows| rows.each(&[STORED])),
     probe!(quads::probed_px, |rows| rows.each(&[N(4096), N(4096), Bits])),
     probe!(quads::no_history_need, |rows| rows.each(&[N(16), N(16), N(4), N(4)])),
     probe!(quads::need, |rows| {
