@@ -23,6 +23,8 @@ const PAUSE: [u32; 2] = [30, 480];
 const RETRY: u32 = 1200;
 /// Relative change of the time that means another load.
 const CHANGE: f32 = 0.05;
+/// Part of the time that tries which fail may take.
+const SPENT: f32 = 0.03;
 /// Part of the time that a switch must come below, for frames that miss the target both ways.
 const GAIN: f32 = 0.97;
 
@@ -46,6 +48,8 @@ pub struct Auto {
     /// The time when the last try ended.
     settled_ms: f32,
     pause: u32,
+    /// Fewest frames until the next try, by what the last one cost, for a small change.
+    rest: f32,
 }
 
 impl Auto {
@@ -55,9 +59,9 @@ impl Auto {
     /// [`SettingsError`] if the target is not above 0 and finite.
     pub fn new(target_ms: f32) -> Result<Self, SettingsError> {
         let control = ShareControl::new(target_ms, [LEAST, 1.0])?;
-        let (last_ms, settled_ms, pause) = ([f32::NAN; 5], f32::NAN, PAUSE[0]);
-        let (is_off, before_ms, [same, missed, since]) = (false, None, [0; 3]);
-        Ok(Self { target_ms, control, is_off, last_ms, same, missed, since, before_ms, settled_ms, pause })
+        let (last_ms, settled_ms, pause) = ([f32::NAN; 5], 0.0, PAUSE[0]);
+        let (is_off, before_ms, [same, missed, since], rest) = (false, None, [0; 3], 0.0);
+        Ok(Self { target_ms, control, is_off, last_ms, same, missed, since, before_ms, settled_ms, pause, rest })
     }
 
     /// The share for the next frame; `None`: every pixel, without foveation. `measured_ms`: time of the last finished
@@ -82,11 +86,13 @@ impl Auto {
         if let Some(before) = self.before_ms.take() {
             let is_kept = median <= self.target_ms || median < GAIN * before;
             self.settled_ms = if is_kept { median } else { before };
+            self.rest = (median / before - 1.0) * self.since as f32 / SPENT;
             return if is_kept { share } else { self.switch() };
         }
-        let is_another = (median / self.settled_ms - 1.0).abs() > CHANGE || self.settled_ms.is_nan();
+        let change = (median / self.settled_ms - 1.0).abs();
+        let pause = self.pause.max((self.rest * CHANGE / change) as u32);
         let fails = self.is_off || median > self.target_ms && share.is_some_and(|share| share <= LEAST);
-        if fails && self.since >= self.pause && (is_another || self.since >= RETRY) {
+        if fails && (self.since >= RETRY || change > CHANGE && self.since >= pause) {
             self.pause = if self.since >= RETRY { PAUSE[0] } else { PAUSE[1].min(2 * self.pause) };
             self.before_ms = Some(median);
             return self.switch();
@@ -144,8 +150,7 @@ fn control(
     (store, time): (Option<Res<DiagnosticsStore>>, Res<Time<Real>>),
     mut seen: Local<Option<Instant>>,
 ) {
-    let device_ms = store.and_then(|store| device_ms(&store, &mut seen));
-    let measured_ms = device_ms.unwrap_or(1e3 * time.delta_secs());
+    let measured_ms = store.and_then(|store| device_ms(&store, &mut seen)).unwrap_or(1e3 * time.delta_secs());
     for (camera, mut foveated, auto) in &mut cameras {
         let Some(target_ms) = foveated.target_fps.map(|fps| 1e3 / fps) else { continue };
         let Some(mut auto) = auto.filter(|auto| auto.target_ms == target_ms) else {
