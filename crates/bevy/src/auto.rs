@@ -17,8 +17,8 @@ const LEAST: f32 = 0.1;
 const LATENCY: u32 = 4;
 /// Frames in a row that miss the target until the smallest share is taken.
 const PATIENCE: u32 = 12;
-/// Fewest frames between two tries: at first, and at most, because each doubles it.
-const PAUSE: [u32; 2] = [30, 480];
+/// Fewest frames between two tries: at first, and at most, because each doubles it, and one that fails by its cost.
+const PAUSE: [u32; 2] = [30, 720];
 /// Frames after which a load that did not change is tried again.
 const RETRY: u32 = 1200;
 /// Relative change of the time that means another load.
@@ -48,8 +48,6 @@ pub struct Auto {
     /// The time when the last try ended.
     settled_ms: f32,
     pause: u32,
-    /// Fewest frames until the next try, by what the last one cost, for a small change.
-    rest: f32,
 }
 
 impl Auto {
@@ -60,8 +58,8 @@ impl Auto {
     pub fn new(target_ms: f32) -> Result<Self, SettingsError> {
         let control = ShareControl::new(target_ms, [LEAST, 1.0])?;
         let (last_ms, settled_ms, pause) = ([f32::NAN; 5], 0.0, PAUSE[0]);
-        let (is_off, before_ms, [same, missed, since], rest) = (false, None, [0; 3], 0.0);
-        Ok(Self { target_ms, control, is_off, last_ms, same, missed, since, before_ms, settled_ms, pause, rest })
+        let (is_off, before_ms, [same, missed, since]) = (false, None, [0; 3]);
+        Ok(Self { target_ms, control, is_off, last_ms, same, missed, since, before_ms, settled_ms, pause })
     }
 
     /// The share for the next frame; `None`: every pixel, without foveation. `measured_ms`: time of the last finished
@@ -86,13 +84,14 @@ impl Auto {
         if let Some(before) = self.before_ms.take() {
             let is_kept = median <= self.target_ms || median < GAIN * before;
             self.settled_ms = if is_kept { median } else { before };
-            self.rest = (median / before - 1.0) * self.since as f32 / SPENT;
+            // A try that costs more is repeated later.
+            let rest = (median / before - 1.0) * self.since as f32 / SPENT;
+            self.pause = self.pause.max(rest as u32).min(PAUSE[1]);
             return if is_kept { share } else { self.switch() };
         }
         let change = (median / self.settled_ms - 1.0).abs();
-        let pause = self.pause.max((self.rest * CHANGE / change) as u32);
         let fails = self.is_off || median > self.target_ms && share.is_some_and(|share| share <= LEAST);
-        if fails && (self.since >= RETRY || change > CHANGE && self.since >= pause) {
+        if fails && (self.since >= RETRY || change > CHANGE && self.since >= self.pause) {
             self.pause = if self.since >= RETRY { PAUSE[0] } else { PAUSE[1].min(2 * self.pause) };
             self.before_ms = Some(median);
             return self.switch();
