@@ -10,9 +10,9 @@ use bevy::render::render_resource::PipelineCache;
 use bevy::render::view::screenshot::{Screenshot, save_to_disk};
 use bevy::render::{ExtractSchedule, MainWorld, RenderApp};
 use bevy::time::TimeUpdateStrategy;
-use bevy::window::WindowResized;
+use bevy::window::{PresentMode, WindowResized};
 use bevy::winit::WinitSettings;
-use bevy_afterimage::{Afterimage, AfterimagePlugin, AfterimageStats, Foveated, Gaze};
+use bevy_afterimage::{Afterimage, AfterimagePlugin, AfterimageStats, Foveated, FoveationKind, Gaze};
 use rustix::time::{ClockId, clock_gettime};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -23,15 +23,18 @@ const SIZE: UVec2 = UVec2::new(640, 360);
 /// Frames of which a picture is taken, counted from the first that moves.
 const SHOTS: [u32; 3] = [20, 40, 60];
 
-/// Frames whose CPU time is measured: no picture is under way.
-const MEASURED: [u32; 2] = [45, 59];
+/// First frame whose CPU time is measured, and how many are: no picture is under way.
+const MEASURED: [u32; 2] = [45, 14];
 
-/// Pictures are written, and pixels counted, a few frames later.
-const LAST: u32 = 72;
+/// Pictures are written, and pixels counted, this many frames later.
+const MORE: u32 = 13;
 
 /// Nothing new is loaded or compiled for this long, and this many frames.
 const QUIET: (Duration, u32) = (Duration::from_millis(1500), 15);
 const PATIENCE: Duration = Duration::from_secs(90);
+
+/// Frames in which `Foveated::auto` settles before anything moves, after all is loaded.
+const SETTLING: u32 = 150;
 
 /// A number of the first frame that moves, because patterns follow it.
 const FIRST_FRAME: u32 = 1000;
@@ -51,6 +54,23 @@ enum Mode {
     },
 }
 
+/// What is measured alone, without pictures.
+#[derive(Resource, Clone, Copy, Debug)]
+struct Timed {
+    size: UVec2,
+    frames: u32,
+}
+
+impl Timed {
+    /// FOREIGN_TIMED is `WIDTHxHEIGHTxFRAMES`.
+    fn read() -> Option<Self> {
+        let text = std::env::var("FOREIGN_TIMED").ok()?;
+        let numbers: Vec<u32> = text.split('x').flat_map(str::parse).collect();
+        let [width, height, frames] = numbers[..] else { panic!("FOREIGN_TIMED is {text}") };
+        Some(Self { size: UVec2::new(width, height), frames })
+    }
+}
+
 impl Mode {
     fn read() -> Self {
         let uniform = Foveated::uniform(0.25);
@@ -61,8 +81,16 @@ impl Mode {
             Ok("quads") => Self::Quads { foveated: uniform, antialias: false },
             Ok("gaze") => Self::Quads { foveated: Foveated::default(), antialias: false },
             Ok("antialias") => Self::Quads { foveated: uniform, antialias: true },
-            mode => panic!("FOREIGN_MODE is {mode:?}: expected own, full, again, taa, quads, gaze or antialias"),
+            Ok("auto") => {
+                let target_fps = std::env::var("FOREIGN_FPS").expect("FOREIGN_FPS").parse().expect("a number");
+                Self::Quads { foveated: Foveated::auto(target_fps), antialias: true }
+            }
+            mode => panic!("FOREIGN_MODE is {mode:?}: expected own, full, again, taa, quads, gaze, antialias or auto"),
         }
+    }
+
+    fn is_auto(self) -> bool {
+        matches!(self, Self::Quads { foveated: Foveated { target_fps: Some(_), .. }, .. })
     }
 }
 
@@ -76,7 +104,8 @@ struct Run {
     quiet_frames: u32,
     /// Frames that have moved. `None`: time stands still.
     frame: Option<u32>,
-    measured_ms: f64,
+    /// Clock and CPU time when the measurement began.
+    measured: [f64; 2],
 }
 
 /// What is loaded and compiled.
@@ -117,16 +146,30 @@ impl Plugin for ForeignPlugin {
                 quiet_since: now,
                 quiet_frames: 0,
                 frame: None,
-                measured_ms: 0.0,
+                measured: [0.0; 2],
             })
             .add_observer(change_camera)
             .add_systems(PreStartup, tell_sizes)
-            .add_systems(PostUpdate, step);
+            .add_systems(PostUpdate, step)
+            .add_systems(Last, tell_choice);
         app.world_mut().resource_mut::<Time<Virtual>>().pause();
+        let timed = Timed::read();
+        let size = timed.map_or(SIZE, |timed| timed.size);
         let mut windows = app.world_mut().query::<&mut Window>();
         for mut window in windows.iter_mut(app.world_mut()) {
             window.resolution.set_scale_factor_override(Some(1.0));
-            window.resolution.set_physical_resolution(SIZE.x, SIZE.y);
+            window.resolution.set_physical_resolution(size.x, size.y);
+            if timed.is_some() {
+                window.present_mode = PresentMode::AutoNoVsync;
+            }
+        }
+        if let Some(timed) = timed {
+            app.insert_resource(timed);
+        }
+        if mode.is_auto() {
+            // It measures the clock's time; what moves does so in steps of at most a frame.
+            app.insert_resource(TimeUpdateStrategy::Automatic);
+            app.world_mut().resource_mut::<Time<Virtual>>().set_max_delta(FRAME);
         }
         app.sub_app_mut(RenderApp).add_systems(ExtractSchedule, count_pipelines);
     }
@@ -171,19 +214,24 @@ fn step(world: &mut World) {
     };
     let frame = frame + 1;
     world.resource_mut::<Run>().frame = Some(frame);
-    if SHOTS.contains(&frame) {
+    let timed = world.get_resource::<Timed>().copied();
+    if timed.is_none() && SHOTS.contains(&frame) {
         let path = world.resource::<Run>().folder.join(format!("{frame:03}.png"));
         world.spawn(Screenshot::primary_window()).observe(save_to_disk(path));
     }
-    if frame == MEASURED[0] {
-        world.resource_mut::<Run>().measured_ms = cpu_ms();
+    let [first, count] = [MEASURED[0], timed.map_or(MEASURED[1], |timed| timed.frames)];
+    let now = |run: &Run| [1e3 * run.began.elapsed().as_secs_f64(), cpu_ms()];
+    if frame == first {
+        let mut run = world.resource_mut::<Run>();
+        run.measured = now(&run);
     }
-    if frame == MEASURED[1] {
-        let spent_ms = cpu_ms() - world.resource::<Run>().measured_ms;
-        println!("foreign: cpu_ms {:.1}", spent_ms / f64::from(MEASURED[1] - MEASURED[0]));
+    if frame == first + count {
+        let run = world.resource::<Run>();
+        let [clock_ms, spent_ms] = [0, 1].map(|i| (now(run)[i] - run.measured[i]) / f64::from(count));
+        println!("foreign: cpu_ms {spent_ms:.1}\nforeign: clock_ms {clock_ms:.1}");
         count_shaded(world);
     }
-    if frame == LAST {
+    if frame == first + count + MORE {
         print_shaded(world);
         world.write_message(AppExit::Success);
     }
@@ -197,16 +245,28 @@ fn is_settled(world: &mut World) -> bool {
         images: world.resource::<Assets<Image>>().len(),
         pipelines: *world.resource::<Pipelines>(),
     };
+    let quiet_frames = QUIET.1 + if world.resource::<Mode>().is_auto() { SETTLING } else { 0 };
     let mut run = world.resource_mut::<Run>();
-    if run.loaded != loaded || loaded.pipelines.waiting > 0 {
+    // What auto switches compiles pipelines, but does not make it start again.
+    let is_settling = run.quiet_frames > QUIET.1 && run.loaded.images == loaded.images;
+    if !is_settling && (run.loaded != loaded || loaded.pipelines.waiting > 0) {
         (run.loaded, run.quiet_since, run.quiet_frames) = (loaded, Instant::now(), 0);
     }
     run.quiet_frames += 1;
-    if run.began.elapsed() > PATIENCE {
+    if !is_settling && run.began.elapsed() > PATIENCE {
         println!("foreign: still loading after {} s: {loaded:?}", PATIENCE.as_secs());
         return true;
     }
-    run.quiet_frames > QUIET.1 && run.quiet_since.elapsed() > QUIET.0
+    run.quiet_frames > quiet_frames && run.quiet_since.elapsed() > QUIET.0
+}
+
+/// Prints what `Foveated::auto` chooses, when it switches foveation off or on.
+fn tell_choice(cameras: Query<&Foveated>, run: Res<Run>, mut last: Local<Option<FoveationKind>>) {
+    let kind = cameras.iter().find(|foveated| foveated.target_fps.is_some()).map(|foveated| foveated.kind);
+    if kind.is_some() && *last != kind {
+        println!("foreign: auto {kind:?} at {:?} after {} quiet frames", run.frame, run.quiet_frames);
+        *last = kind;
+    }
 }
 
 fn count_shaded(world: &mut World) {

@@ -2,10 +2,13 @@
 """Runs examples of the published `bevy` crate with the plugin on every Camera3d, and compares them with full rate.
 
     foreign/run.py --assets BEVY/assets [--modes quads,gaze,antialias,again,own] [--out out/foreign] [EXAMPLE ...]
+    foreign/run.py --assets BEVY/assets --modes auto [--fps 240] [--size 320x180] [--frames 40] [--rounds 2] ...
 
 Takes the examples out of cargo's registry, patches copies of them, and runs each under a virtual display (Xvfb).
 Writes pictures, logs and a table to the folder `out`. Nothing of Bevy's is committed: its assets, which the published
 crate lacks, are a checkout of Bevy of the same version, or its git directory.
+
+The mode `auto` writes no pictures: it measures TAA at full rate, antialiased quads, and `Foveated::auto` in turn.
 
 Needs Python 3.9, Xvfb, a Vulkan driver, software or not, and cargo.
 """
@@ -48,6 +51,9 @@ STAND_INS = {
     "environment_maps/pisa_specular_rgb9e5_zstd.ktx2": "environment_maps/pisa_diffuse_rgb9e5_zstd.ktx2",
 }
 
+# What `Foveated::auto` is compared with: the faster of these.
+AUTO_OVER = ("taa", "antialias")
+
 TIMEOUT_S = 600
 
 # Lines of the log that differ from run to run.
@@ -68,7 +74,10 @@ def main():
         folder = out / name
         shutil.rmtree(folder, ignore_errors=True)
         notes = [problems[name]] if name in problems else copy_assets(path, arguments.assets, out)
-        new = run_example(name, folder, arguments, notes, name in problems)
+        if arguments.modes == ["auto"]:
+            new = [] if name in problems else [time_auto(name, folder, arguments, notes)]
+        else:
+            new = run_example(name, folder, arguments, notes, name in problems)
         rows = [row for row in rows if row["example"] != name] + new
         # After each one, because all of them take long.
         write_report(out, rows)
@@ -81,10 +90,14 @@ def parse():
     parser.add_argument("--assets", type=Path, required=True)
     parser.add_argument("--modes", type=lambda text: text.split(","), default=["quads"])
     parser.add_argument("--out", type=Path, default=PLUGIN / "out/foreign")
+    parser.add_argument("--fps", type=float, default=240, help="target of `Foveated::auto`")
+    parser.add_argument("--size", default="320x180", help="of the window, in mode auto")
+    parser.add_argument("--frames", type=int, default=40, help="that are measured, in mode auto")
+    parser.add_argument("--rounds", type=int, default=2, help="of which the fastest counts, in mode auto")
     arguments = parser.parse_args()
     unknown = set(arguments.modes) - set(REFERENCES)
-    if unknown:
-        parser.error(f"modes are {', '.join(REFERENCES)}")
+    if unknown and arguments.modes != ["auto"]:
+        parser.error(f"modes are {', '.join(REFERENCES)}, or auto alone")
     return arguments
 
 
@@ -253,7 +266,26 @@ def run_example(name, folder, arguments, notes, is_broken):
     return rows
 
 
-def run(name, mode, folder, out):
+def time_auto(name, folder, arguments, notes):
+    """Runs each in turn, several times. The fastest of each counts, because other work only adds time."""
+    timed = {"FOREIGN_TIMED": f"{arguments.size}x{arguments.frames}", "FOREIGN_FPS": str(arguments.fps)}
+    modes = (*AUTO_OVER, "auto")
+    runs = {mode: [] for mode in modes}
+    for i in range(arguments.rounds):
+        for mode in modes:
+            print(f"{name}: {mode}", flush=True)
+            runs[mode].append(run(name, mode, folder / str(i), arguments.out.resolve(), **timed))
+    result = {"example": name, "mode": "auto", "notes": notes, "shaded": runs["auto"][-1]["shaded"]}
+    for mode in modes:
+        result["notes"] = result["notes"] + [f"{mode}: {note}" for each in runs[mode] for note in each["notes"]]
+    cpu = {mode: [each["cpu_ms"] for each in runs[mode] if each["cpu_ms"]] for mode in modes}
+    if all(cpu.values()):
+        best = min(min(cpu[mode]) for mode in AUTO_OVER)
+        result |= {"cpu": cpu, "ratio": min(cpu["auto"]) / best}
+    return result
+
+
+def run(name, mode, folder, out, **timed):
     """Runs an example once. Returns its numbers and its log."""
     shots = folder / mode
     shots.mkdir(parents=True)
@@ -261,7 +293,7 @@ def run(name, mode, folder, out):
     command = [*display, str(binary(out / "package", name)), *ARGUMENTS.get(name, [])]
     more = {"FOREIGN_MODE": mode, "FOREIGN_OUT": str(shots), "BEVY_ASSET_ROOT": str(out), "NO_COLOR": "1"}
     # A desktop's own display is not used.
-    more |= {"WAYLAND_DISPLAY": "", "WGPU_BACKEND": "vulkan"}
+    more |= {"WAYLAND_DISPLAY": "", "WGPU_BACKEND": "vulkan", **timed}
     log_path = folder / f"{mode}.log"
     with open(log_path, "w") as log:
         process = subprocess.Popen(command, env=environment(**more), stdout=log, stderr=log, start_new_session=True)
@@ -321,6 +353,9 @@ def earlier(out):
 
 def write_report(out, rows):
     rows = sorted(rows, key=lambda row: EXAMPLES.index(row["example"]) if row["example"] in EXAMPLES else len(EXAMPLES))
+    if any(row["mode"] == "auto" for row in rows):
+        write_times(out, rows)
+        return
     lines = [
         "| example | mode | PSNR | worst crop | where | CPU ms a frame, full, then mode | shaded | notes |",
         "|---|---|---|---|---|---|---|---|",
@@ -334,6 +369,18 @@ def write_report(out, rows):
     for row in rows:
         lines += [f"- {row['example']} {row['mode']}: + {line}" for line in row.get("new", [])]
         lines += [f"- {row['example']} {row['mode']}: - {line}" for line in row.get("gone", [])]
+    (out / "table.md").write_text("\n".join(lines) + "\n")
+    (out / "rows.json").write_text(json.dumps(rows, indent=1))
+
+
+def write_times(out, rows):
+    modes = (*AUTO_OVER, "auto")
+    lines = [f"| example | {' | '.join(modes)} | ratio | shaded | notes |", "|---|---|---|---|---|---|---|"]
+    for row in rows:
+        cpu = row.get("cpu", {})
+        cells = [row["example"], *(", ".join(f"{ms:.0f}" for ms in cpu.get(mode, [])) for mode in modes)]
+        cells += [f"{row['ratio']:.2f}" if "ratio" in row else "", ", ".join(row["shaded"]), "; ".join(row["notes"])]
+        lines.append("| " + " | ".join(cell.replace("|", "/") for cell in cells) + " |")
     (out / "table.md").write_text("\n".join(lines) + "\n")
     (out / "rows.json").write_text(json.dumps(rows, indent=1))
 

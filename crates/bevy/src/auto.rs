@@ -17,12 +17,14 @@ const LEAST: f32 = 0.1;
 const LATENCY: u32 = 4;
 /// Frames in a row that miss the target until the smallest share is taken.
 const PATIENCE: u32 = 12;
-/// Fewest frames between two tries: at first, and at most, because each doubles it.
-const PAUSE: [u32; 2] = [30, 480];
+/// Fewest frames between two tries: at first, and at most, because each doubles it, and one that fails by its cost.
+const PAUSE: [u32; 2] = [30, 720];
 /// Frames after which a load that did not change is tried again.
 const RETRY: u32 = 1200;
 /// Relative change of the time that means another load.
 const CHANGE: f32 = 0.05;
+/// Part of the time that tries which fail may take.
+const SPENT: f32 = 0.03;
 /// Part of the time that a switch must come below, for frames that miss the target both ways.
 const GAIN: f32 = 0.97;
 
@@ -55,7 +57,7 @@ impl Auto {
     /// [`SettingsError`] if the target is not above 0 and finite.
     pub fn new(target_ms: f32) -> Result<Self, SettingsError> {
         let control = ShareControl::new(target_ms, [LEAST, 1.0])?;
-        let (last_ms, settled_ms, pause) = ([f32::NAN; 5], f32::NAN, PAUSE[0]);
+        let (last_ms, settled_ms, pause) = ([f32::NAN; 5], 0.0, PAUSE[0]);
         let (is_off, before_ms, [same, missed, since]) = (false, None, [0; 3]);
         Ok(Self { target_ms, control, is_off, last_ms, same, missed, since, before_ms, settled_ms, pause })
     }
@@ -82,11 +84,14 @@ impl Auto {
         if let Some(before) = self.before_ms.take() {
             let is_kept = median <= self.target_ms || median < GAIN * before;
             self.settled_ms = if is_kept { median } else { before };
+            // A try that costs more is repeated later.
+            let rest = (median / before - 1.0) * self.since as f32 / SPENT;
+            self.pause = self.pause.max(rest as u32).min(PAUSE[1]);
             return if is_kept { share } else { self.switch() };
         }
-        let is_another = (median / self.settled_ms - 1.0).abs() > CHANGE || self.settled_ms.is_nan();
+        let change = (median / self.settled_ms - 1.0).abs();
         let fails = self.is_off || median > self.target_ms && share.is_some_and(|share| share <= LEAST);
-        if fails && self.since >= self.pause && (is_another || self.since >= RETRY) {
+        if fails && (self.since >= RETRY || change > CHANGE && self.since >= self.pause) {
             self.pause = if self.since >= RETRY { PAUSE[0] } else { PAUSE[1].min(2 * self.pause) };
             self.before_ms = Some(median);
             return self.switch();
@@ -144,8 +149,7 @@ fn control(
     (store, time): (Option<Res<DiagnosticsStore>>, Res<Time<Real>>),
     mut seen: Local<Option<Instant>>,
 ) {
-    let device_ms = store.and_then(|store| device_ms(&store, &mut seen));
-    let measured_ms = device_ms.unwrap_or(1e3 * time.delta_secs());
+    let measured_ms = store.and_then(|store| device_ms(&store, &mut seen)).unwrap_or(1e3 * time.delta_secs());
     for (camera, mut foveated, auto) in &mut cameras {
         let Some(target_ms) = foveated.target_fps.map(|fps| 1e3 / fps) else { continue };
         let Some(mut auto) = auto.filter(|auto| auto.target_ms == target_ms) else {

@@ -147,6 +147,12 @@ impl Context {
         Ok(())
     }
 
+    /// For frames without it: keeps what is compiled, without history.
+    pub fn rest(&mut self) {
+        (self.is_planned, self.is_shown, self.counters, self.exposure) = (false, false, None, None);
+        self.post.forget();
+    }
+
     /// The quads that are shaded.
     pub fn mask(&self) -> Option<&Texture> {
         self.post.quad_mask()

@@ -60,10 +60,13 @@ fn prepare(
     mut contexts: ResMut<Contexts>,
     device: Res<RenderDevice>,
     mut cameras: Query<(Entity, &mut ExtractedAfterimage, &ExtractedCamera, Option<&TemporalJitter>)>,
+    kept: Query<(), With<crate::camera::WithoutMsaa>>,
 ) {
     let device = device.wgpu_device();
     let contexts = &mut contexts.0;
-    contexts.retain(|&camera, _| cameras.contains(camera));
+    // Where foveation comes and goes by itself, pipelines are not compiled again.
+    contexts.iter_mut().filter(|(camera, _)| !cameras.contains(**camera)).for_each(|(_, context)| context.rest());
+    contexts.retain(|&camera, _| kept.contains(camera));
     for (camera, mut frame, extracted, jitter) in &mut cameras {
         frame.complete(extracted, jitter);
         let frame = &*frame;

@@ -38,9 +38,16 @@ pub struct Headless {
 impl Headless {
     /// An application with Bevy's default plugins, `AfterimagePlugin`, and a scene.
     pub fn new<M>(size: UVec2, scene: impl Plugins<M>) -> Self {
+        Self::with(size, |app| {
+            app.add_plugins(AfterimagePlugin).add_plugins(scene);
+        })
+    }
+
+    /// An application with Bevy's default plugins, and what `add` adds.
+    pub fn with(size: UVec2, add: impl FnOnce(&mut App)) -> Self {
         let mut app = App::new();
         add_default_plugins(&mut app);
-        app.add_plugins(AfterimagePlugin).add_plugins(scene);
+        add(&mut app);
         note_problems(&mut app);
         start(&mut app);
         let target = app.world_mut().resource_mut::<Assets<Image>>().add(target_image(size));

@@ -1,4 +1,5 @@
-//! Several cameras on one target, of which some are foveated: what each of them shows at full rate.
+//! Several cameras on one target, of which some are foveated: what each of them shows in an application of Bevy without
+//! the plugin.
 
 use crate::SIZE;
 use crate::common::headless::Headless;
@@ -14,29 +15,36 @@ use bevy::render::render_resource::{
     Extent3d, TextureDimension, TextureFormat, TextureViewDescriptor, TextureViewDimension,
 };
 use bevy_afterimage::testing::recorded;
-use bevy_afterimage::{Afterimage, Foveated, FoveationKind};
+use bevy_afterimage::{Afterimage, AfterimagePlugin, Foveated, FoveationKind};
 
 /// Layer of what only upper cameras show.
 const ARM: RenderLayers = RenderLayers::layer(1);
 
-/// At full rate, and by quads without a gaze.
-fn kinds() -> [Foveated; 2] {
-    [Foveated { kind: FoveationKind::Off, ..default() }, Foveated::uniform(0.25)]
-}
+/// A camera that is foveated where the application has the plugin.
+#[derive(Component)]
+struct Foveates;
+
+/// Applications with the same cameras: without the plugin, and with it.
+type Rooms = [Headless; 2];
 
 /// Where the camera is at a time.
 fn place(t_s: f32) -> Transform {
     Transform::from_xyz(0.6 * t_s - 0.6, 1.0, 2.0).looking_at(Vec3::new(0.3 * t_s, 0.6, -3.0), Vec3::Y)
 }
 
-/// Cubes on a floor, an arm that only upper cameras show, and for each kind an image to which `spawn` adds cameras.
-fn room(spawn: impl Fn(&mut World, RenderTarget, Foveated)) -> (Headless, [Handle<Image>; 2]) {
-    let mut headless = Headless::new(SIZE, |_: &mut App| {});
+/// Cubes on a floor, an arm that only upper cameras show, and the cameras that `spawn` adds.
+fn room(has_plugin: bool, spawn: impl Fn(&mut World, RenderTarget)) -> Headless {
+    let mut headless = Headless::with(SIZE, |app| {
+        if has_plugin {
+            app.add_plugins(AfterimagePlugin);
+        }
+    });
     let white = MeshMaterial3d(headless.asset(StandardMaterial::from(Color::WHITE)));
     let teal = MeshMaterial3d(headless.asset(StandardMaterial::from(Color::srgb(0.0, 0.8, 0.7))));
     let floor = Mesh3d(headless.asset(Plane3d::new(Vec3::Y, Vec2::splat(10.0)).into()));
     let cube = Mesh3d(headless.asset(Cuboid::new(2.0, 0.5, 1.0).into()));
     let arm = Mesh3d(headless.asset(Cuboid::new(0.1, 0.1, 0.5).into()));
+    let target = headless.render_target();
     let world = headless.app.world_mut();
     world.spawn((floor, white.clone()));
     world.spawn((cube.clone(), white.clone(), Transform::from_xyz(0.0, 0.25, -3.0)));
@@ -44,17 +52,35 @@ fn room(spawn: impl Fn(&mut World, RenderTarget, Foveated)) -> (Headless, [Handl
     world.spawn((arm, teal, place(1.0) * Transform::from_xyz(0.2, -0.1, -0.25), ARM, NotShadowCaster));
     let light = PointLight { color: Color::srgb(1.0, 0.8, 0.8), shadow_maps_enabled: true, ..default() };
     world.spawn((light, Transform::from_xyz(-2.0, 4.0, -0.75), RenderLayers::from_layers(&[0, 1])));
-    let targets = kinds().map(|kind| {
-        let image = headless.add_target(SIZE);
-        spawn(headless.app.world_mut(), RenderTarget::from(image.clone()), kind);
-        image
-    });
-    (headless, targets)
+    spawn(world, target);
+    if has_plugin {
+        for camera in foveated(world) {
+            world.entity_mut(camera).insert((Afterimage::default(), Foveated::uniform(0.25)));
+        }
+    }
+    headless
+}
+
+fn rooms(spawn: impl Fn(&mut World, RenderTarget)) -> Rooms {
+    [false, true].map(|has_plugin| room(has_plugin, &spawn))
+}
+
+/// Cameras that are foveated, or would be with the plugin.
+fn foveated(world: &mut World) -> Vec<Entity> {
+    world.query_filtered::<Entity, With<Foveates>>().iter(world).collect()
+}
+
+/// Renders frames, and shows the last one.
+fn shots(rooms: &mut Rooms, frames: usize) -> [Vec<u8>; 2] {
+    rooms.each_mut().map(|room| {
+        room.frames(frames);
+        room.read()
+    })
 }
 
 /// A camera of the world, which is foveated.
-fn world_camera(target: RenderTarget, kind: Foveated) -> impl Bundle {
-    (Camera3d::default(), target, TONEMAPPING, place(1.0), Afterimage::default(), kind)
+fn world_camera(target: RenderTarget) -> impl Bundle {
+    (Camera3d::default(), target, TONEMAPPING, place(1.0), Foveates)
 }
 
 /// A camera on top of it that shows the arm.
@@ -86,11 +112,10 @@ fn arm_pixels(shot: &[u8]) -> usize {
     shot.chunks_exact(4).filter(is_arm).count()
 }
 
-/// Difference of what both kinds show, without errors.
-fn compare(headless: &mut Headless, targets: &[Handle<Image>; 2], name: &str) -> [Vec<u8>; 2] {
-    headless.frames(40);
-    assert_eq!(headless.problems(), &[] as &[String], "{name}");
-    let shots = targets.each_ref().map(|target| headless.read_target(target));
+/// Difference of what both show, without errors.
+fn compare(rooms: &mut Rooms, name: &str) -> [Vec<u8>; 2] {
+    let shots = shots(rooms, 40);
+    assert!(rooms.iter().all(|room| room.problems().is_empty()), "{name}: {:?}", rooms[1].problems());
     let share = differing(&shots[0], &shots[1]);
     println!("{name}: {:.2} % of the pixels differ, {} of the arm", 100.0 * share, arm_pixels(&shots[0]));
     assert!(shots[0].chunks(4).filter(|pixel| pixel[0] > 120).count() > 1000, "{name}: the world is dark");
@@ -100,30 +125,31 @@ fn compare(headless: &mut Headless, targets: &[Handle<Image>; 2], name: &str) ->
 
 #[test]
 fn a_view_model_is_drawn_on_the_world() {
-    let (mut headless, targets) = room(|world, target, kind| {
-        world.spawn(world_camera(target.clone(), kind));
+    let mut rooms = rooms(|world, target| {
+        world.spawn(world_camera(target.clone()));
         world.spawn(arm_camera(target, ClearColorConfig::Default));
     });
     // The camera moves, and stops.
-    let world = headless.app.world_mut();
-    let mut cameras = world.query_filtered::<&mut Transform, With<Camera3d>>();
-    for frame in 0..20 {
-        cameras.iter_mut(headless.app.world_mut()).for_each(|mut own| *own = place(0.05 * frame as f32));
-        headless.frames(1);
+    for frame in 0..=20 {
+        for room in &mut rooms {
+            let world = room.app.world_mut();
+            let mut cameras = world.query_filtered::<&mut Transform, With<Camera3d>>();
+            cameras.iter_mut(world).for_each(|mut own| *own = place(0.05 * frame as f32));
+            room.frames(1);
+        }
     }
-    cameras.iter_mut(headless.app.world_mut()).for_each(|mut own| *own = place(1.0));
-    let shots = compare(&mut headless, &targets, "a view model");
+    let shots = compare(&mut rooms, "a view model");
     assert!(shots.iter().all(|shot| arm_pixels(shot) > 500), "the arm is missing");
 }
 
 /// Cameras on one target: with an arm or without, and how many are foveated.
-type Setup = (&'static str, bool, usize, fn(&mut World, RenderTarget, Foveated));
+type Setup = (&'static str, bool, usize, fn(&mut World, RenderTarget));
 
 fn check_setups(setups: &[Setup]) {
     for &(name, has_arm, foveated, spawn) in setups {
-        let (mut headless, targets) = room(spawn);
-        let shots = compare(&mut headless, &targets, name);
-        let found = recorded(headless.app.sub_app_mut(RenderApp).world_mut()).len();
+        let mut rooms = rooms(spawn);
+        let shots = compare(&mut rooms, name);
+        let found = recorded(rooms[1].app.sub_app_mut(RenderApp).world_mut()).len();
         assert_eq!(found, foveated, "{name}: foveated cameras");
         let arms = shots.each_ref().map(|shot| arm_pixels(shot));
         assert!(!has_arm || arms.iter().all(|&pixels| pixels > 20), "{name}: the arm is missing: {arms:?}");
@@ -131,74 +157,71 @@ fn check_setups(setups: &[Setup]) {
 }
 
 #[test]
-fn cameras_on_one_target_show_what_they_show_at_full_rate() {
+fn cameras_on_one_target_show_what_bevy_shows() {
     check_setups(&[
-        ("hdr below hdr", true, 1, |world, target, kind| {
-            world.spawn((world_camera(target.clone(), kind), Hdr));
+        ("hdr below hdr", true, 1, |world, target| {
+            world.spawn((world_camera(target.clone()), Hdr));
             world.spawn((arm_camera(target, ClearColorConfig::Default), Hdr));
         }),
-        ("hdr below, without MSAA, not cleared", true, 1, |world, target, kind| {
-            world.spawn((world_camera(target.clone(), kind), Hdr, Msaa::Off));
+        ("hdr below, without MSAA, not cleared", true, 1, |world, target| {
+            world.spawn((world_camera(target.clone()), Hdr, Msaa::Off));
             world.spawn((arm_camera(target, ClearColorConfig::None), Hdr, Msaa::Off));
         }),
-        ("not cleared", true, 1, |world, target, kind| {
-            world.spawn(world_camera(target.clone(), kind));
+        ("not cleared", true, 1, |world, target| {
+            world.spawn(world_camera(target.clone()));
             world.spawn(arm_camera(target, ClearColorConfig::None));
         }),
-        ("both foveated", true, 1, |world, target, kind| {
-            world.spawn(world_camera(target.clone(), kind));
-            world.spawn((arm_camera(target, ClearColorConfig::Default), Afterimage::default(), kind));
+        ("both foveated", true, 1, |world, target| {
+            world.spawn(world_camera(target.clone()));
+            world.spawn((arm_camera(target, ClearColorConfig::Default), Foveates));
         }),
-        ("a user interface on an arm", true, 1, |world, target, kind| {
-            world.spawn(world_camera(target.clone(), kind));
+        ("a user interface on an arm", true, 1, |world, target| {
+            world.spawn(world_camera(target.clone()));
             world.spawn(arm_camera(target.clone(), ClearColorConfig::Default));
             let camera = Camera { order: 2, clear_color: ClearColorConfig::None, ..default() };
             let camera = world.spawn((Camera2d, camera, target, RenderLayers::layer(2))).id();
             let bar = Node { width: Val::Px(60.0), height: Val::Px(20.0), ..default() };
             world.spawn((bar, BackgroundColor(Color::srgb(1.0, 1.0, 0.0)), UiTargetCamera(camera)));
         }),
-        ("split screen", false, 2, |world, target, kind| {
+        ("split screen", false, 2, |world, target| {
             for side in 0..2 {
                 let physical_position = UVec2::new(side * SIZE.x / 2, 0);
                 let physical_size = UVec2::new(SIZE.x / 2, SIZE.y);
                 let viewport = Some(Viewport { physical_position, physical_size, ..default() });
-                world.spawn((
-                    world_camera(target.clone(), kind),
-                    Camera { order: side as isize, viewport, ..default() },
-                ));
+                world.spawn((world_camera(target.clone()), Camera { order: side as isize, viewport, ..default() }));
             }
         }),
-        ("a picture in the picture", true, 1, |world, target, kind| {
-            world.spawn(world_camera(target.clone(), kind));
+        ("a picture in the picture", true, 1, |world, target| {
+            world.spawn(world_camera(target.clone()));
             let viewport = Viewport { physical_size: SIZE / 4, ..default() };
             world
                 .spawn(arm_camera(target, ClearColorConfig::Default))
                 .insert(Camera { order: 1, viewport: Some(viewport), ..default() })
                 .insert(Projection::from(PerspectiveProjection { fov: 1.5, ..default() }));
         }),
-        ("below a camera that hides it", true, 2, |world, target, kind| {
-            world.spawn((world_camera(target.clone(), kind), Msaa::Off));
+        ("below a camera that hides it", true, 2, |world, target| {
+            world.spawn((world_camera(target.clone()), Msaa::Off));
             // Its sides clear what lies below.
             let camera = Camera { order: 1, msaa_writeback: MsaaWriteback::Off, ..default() };
             world.spawn((arm_camera(target.clone(), ClearColorConfig::Default), Msaa::Off)).insert(camera);
             let viewport = Some(Viewport { physical_size: UVec2::new(SIZE.x / 2, SIZE.y), ..default() });
-            world.spawn((world_camera(target, kind), Camera { order: 2, viewport, ..default() }, Msaa::Off));
+            world.spawn((world_camera(target), Camera { order: 2, viewport, ..default() }, Msaa::Off));
         }),
-        ("the upper one is older", true, 1, |world, target, kind| {
+        ("the upper one is older", true, 1, |world, target| {
             world.spawn(arm_camera(target.clone(), ClearColorConfig::Default));
-            world.spawn(world_camera(target, kind));
+            world.spawn(world_camera(target));
         }),
-        ("a camera between them is not active", true, 1, |world, target, kind| {
-            world.spawn(world_camera(target.clone(), kind));
+        ("a camera between them is not active", true, 1, |world, target| {
+            world.spawn(world_camera(target.clone()));
             let idle = Camera { order: 1, is_active: false, ..default() };
             world.spawn((Camera3d::default(), idle, target.clone()));
             world.spawn(arm_camera(target, ClearColorConfig::Default)).insert(Camera { order: 2, ..default() });
         }),
-        ("above one that its sky hides", false, 1, |world, target, kind| {
+        ("above one that its sky hides", false, 1, |world, target| {
             world.spawn(arm_camera(target.clone(), ClearColorConfig::Default)).insert(Camera::default());
             let image = world.resource_mut::<Assets<Image>>().add(sky());
             let camera = Camera { order: 1, clear_color: ClearColorConfig::None, ..default() };
-            world.spawn(world_camera(target, kind)).insert((camera, Skybox { image: Some(image), ..default() }));
+            world.spawn(world_camera(target)).insert((camera, Skybox { image: Some(image), ..default() }));
         }),
     ]);
 }
@@ -212,42 +235,42 @@ fn wide_camera(target: RenderTarget) -> impl Bundle {
 }
 
 #[test]
-fn cameras_of_two_formats_show_what_they_show_at_full_rate() {
+fn cameras_of_two_formats_show_what_bevy_shows() {
     // Each format has a texture of its own, which is blended with the target.
     check_setups(&[
-        ("hdr below none", true, 1, |world, target, kind| {
-            world.spawn((world_camera(target.clone(), kind), Hdr));
+        ("hdr below none", true, 1, |world, target| {
+            world.spawn((world_camera(target.clone()), Hdr));
             world.spawn(arm_camera(target, SEE_THROUGH));
         }),
-        ("none below hdr", true, 1, |world, target, kind| {
-            world.spawn(world_camera(target.clone(), kind));
+        ("none below hdr", true, 1, |world, target| {
+            world.spawn(world_camera(target.clone()));
             world.spawn((arm_camera(target, SEE_THROUGH), Hdr));
         }),
         // Writeback is that of the lowest camera, not of the one in the middle.
-        ("hdr, none, hdr", true, 1, |world, target, kind| {
-            world.spawn((world_camera(target.clone(), kind), Hdr));
+        ("hdr, none, hdr", true, 1, |world, target| {
+            world.spawn((world_camera(target.clone()), Hdr));
             world.spawn(wide_camera(target.clone()));
             let camera = Camera { order: 2, ..default() };
             world.spawn((arm_camera(target, ClearColorConfig::Default), Hdr)).insert(camera);
         }),
-        ("hdr, see-through, above none", false, 1, |world, target, kind| {
+        ("hdr, see-through, above none", false, 1, |world, target| {
             let backdrop = ClearColorConfig::Custom(Color::srgb(0.6, 0.5, 0.5));
             world.spawn(arm_camera(target.clone(), backdrop)).insert(Camera { clear_color: backdrop, ..default() });
             let camera = Camera { order: 1, clear_color: SEE_THROUGH, ..default() };
-            world.spawn((world_camera(target, kind), Hdr)).insert(camera);
+            world.spawn((world_camera(target), Hdr)).insert(camera);
         }),
-        ("hdr beside none", false, 2, |world, target, kind| {
+        ("hdr beside none", false, 2, |world, target| {
             let physical_size = UVec2::new(SIZE.x / 2, SIZE.y);
             let half = |order: u32| {
                 let physical_position = UVec2::new(order * SIZE.x / 2, 0);
                 let viewport = Some(Viewport { physical_position, physical_size, ..default() });
                 Camera { order: order as isize, viewport, ..default() }
             };
-            world.spawn((world_camera(target.clone(), kind), Hdr)).insert(half(0));
-            world.spawn(world_camera(target, kind)).insert(half(1));
+            world.spawn((world_camera(target.clone()), Hdr)).insert(half(0));
+            world.spawn(world_camera(target)).insert(half(1));
         }),
-        ("hdr below none with a prepass", true, 1, |world, target, kind| {
-            world.spawn((world_camera(target.clone(), kind), Hdr));
+        ("hdr below none with a prepass", true, 1, |world, target| {
+            world.spawn((world_camera(target.clone()), Hdr));
             world.spawn((arm_camera(target, SEE_THROUGH), DepthPrepass));
         }),
     ]);
@@ -257,71 +280,72 @@ fn cameras_of_two_formats_show_what_they_show_at_full_rate() {
 fn hdr_comes_and_goes() {
     // Where it clears, all is white: on a texture of its own.
     let white = ClearColorConfig::Custom(Color::WHITE);
-    let (mut headless, targets) = room(|world, target, kind| {
-        world.spawn(world_camera(target.clone(), kind));
+    let mut rooms = rooms(|world, target| {
+        world.spawn(world_camera(target.clone()));
         world.spawn(arm_camera(target, white));
     });
     let clears = |shots: &[Vec<u8>; 2]| shots.each_ref().map(|shot| shot[..3] == [255; 3]);
-    let shots = compare(&mut headless, &targets, "none");
+    let shots = compare(&mut rooms, "none");
     assert_eq!(clears(&shots), [false; 2]);
-    let world = headless.app.world_mut();
-    let mut cameras = world.query_filtered::<(Entity, Has<Afterimage>), With<Camera3d>>();
-    let cameras: Vec<_> = cameras.iter(world).collect();
-    for (name, of_world, hides) in [("the world's", true, true), ("all", false, false)] {
-        for &(camera, _) in cameras.iter().filter(|(_, is_world)| *is_world == of_world) {
-            headless.app.world_mut().entity_mut(camera).insert(Hdr);
+    let mut change = |name: &str, change: &dyn Fn(EntityWorldMut, bool), hides: bool| {
+        for room in &mut rooms {
+            let world = room.app.world_mut();
+            let mut cameras = world.query_filtered::<(Entity, Has<Foveates>), With<Camera3d>>();
+            let cameras: Vec<_> = cameras.iter(world).collect();
+            cameras.into_iter().for_each(|(camera, is_world)| change(world.entity_mut(camera), is_world));
         }
-        let shots = compare(&mut headless, &targets, name);
+        let shots = compare(&mut rooms, name);
         assert_eq!(clears(&shots), [hides; 2], "{name}");
+    };
+    for (name, of_world, hides) in [("the world's", true, true), ("all", false, false)] {
+        let insert = |mut camera: EntityWorldMut, is_world| {
+            if is_world == of_world {
+                camera.insert(Hdr);
+            }
+        };
+        change(name, &insert, hides);
     }
-    for &(camera, _) in &cameras {
-        headless.app.world_mut().entity_mut(camera).remove::<Hdr>();
-    }
-    let shots = compare(&mut headless, &targets, "none again");
-    assert_eq!(clears(&shots), [false; 2]);
+    let remove = |mut camera: EntityWorldMut, _| {
+        camera.remove::<Hdr>();
+    };
+    change("none again", &remove, false);
+}
+
+/// Adds a camera that shows the arm to each.
+fn add_arms(rooms: &mut Rooms) -> [Entity; 2] {
+    rooms.each_mut().map(|room| {
+        let camera = arm_camera(room.render_target(), ClearColorConfig::Default);
+        room.app.world_mut().spawn(camera).id()
+    })
 }
 
 #[test]
 fn cameras_on_a_foveated_one_come_and_go() {
-    let (mut headless, targets) = room(|world, target, kind| {
-        world.spawn(world_camera(target, kind));
+    let mut rooms = rooms(|world, target| {
+        world.spawn(world_camera(target));
     });
-    let [alone, with] = [false, true].map(|has_arm| {
-        let uppers = targets.each_ref().map(|target| {
-            let target = RenderTarget::from(target.clone());
-            has_arm.then(|| headless.app.world_mut().spawn(arm_camera(target, ClearColorConfig::Default)).id())
-        });
-        // The world is there in the first frame, too.
-        headless.frames(1);
-        let shots = targets.each_ref().map(|target| headless.read_target(target));
-        if has_arm {
-            let share = differing(&shots[0], &shots[1]);
-            println!("the frame in which it comes: {:.2} %", 100.0 * share);
-            assert!(share < 0.02, "{share}");
-        }
-        let shots = compare(&mut headless, &targets, "with and without an arm");
-        for upper in uppers.into_iter().flatten() {
-            headless.app.world_mut().entity_mut(upper).despawn();
-        }
-        shots.map(|shot| arm_pixels(&shot))
-    });
+    let alone = compare(&mut rooms, "without an arm").map(|shot| arm_pixels(&shot));
+    let arms = add_arms(&mut rooms);
+    // The world is there in the first frame, too.
+    let first = shots(&mut rooms, 1);
+    let share = differing(&first[0], &first[1]);
+    println!("the frame in which it comes: {:.2} %", 100.0 * share);
+    assert!(share < 0.02, "{share}");
+    let with = compare(&mut rooms, "with an arm").map(|shot| arm_pixels(&shot));
     assert!(alone.iter().all(|&pixels| pixels < 20) && with.iter().all(|&pixels| pixels > 500), "{alone:?} {with:?}");
-    headless.frames(1);
-    let shots = targets.each_ref().map(|target| headless.read_target(target));
-    assert!(shots.iter().all(|shot| arm_pixels(shot) < 20), "the arm stays");
+    for (room, arm) in rooms.iter_mut().zip(arms) {
+        room.app.world_mut().entity_mut(arm).despawn();
+    }
+    assert!(shots(&mut rooms, 1).iter().all(|shot| arm_pixels(shot) < 20), "the arm stays");
     // The lower camera no longer is foveated, and is again.
-    let mut cameras = headless.app.world_mut().query_filtered::<Entity, With<Afterimage>>();
-    let cameras: Vec<Entity> = cameras.iter(headless.app.world()).collect();
-    for target in &targets {
-        let target = RenderTarget::from(target.clone());
-        headless.app.world_mut().spawn((arm_camera(target, ClearColorConfig::Default), Hdr)).remove::<Hdr>();
-    }
-    for camera in &cameras {
-        headless.app.world_mut().entity_mut(*camera).remove::<Afterimage>();
-    }
-    compare(&mut headless, &targets, "without Afterimage");
-    for camera in cameras {
-        headless.app.world_mut().entity_mut(camera).insert(Afterimage::default());
-    }
-    compare(&mut headless, &targets, "with it again");
+    add_arms(&mut rooms);
+    let world = rooms[1].app.world_mut();
+    let camera = foveated(world)[0];
+    world.entity_mut(camera).remove::<Afterimage>();
+    compare(&mut rooms, "without Afterimage");
+    rooms[1].app.world_mut().entity_mut(camera).insert(Afterimage::default());
+    compare(&mut rooms, "with it again");
+    let off = Foveated { kind: FoveationKind::Off, ..default() };
+    rooms[1].app.world_mut().entity_mut(camera).insert(off);
+    compare(&mut rooms, "at full rate");
 }
