@@ -116,8 +116,9 @@ fn need(lod: f32, samples: f32, contrast: f32) -> f32 {
     return coarse * coarse + select(0.0, few, samples < ENOUGH_SAMPLES);
 }
 
-// What the stored samples around a pixel's previous position say about its need: of the nearest one its squared distance
-// in pixels, color, level of detail (negative without any) and number of samples; smallest and largest color of all.
+// What the stored samples around a pixel's previous position say about its need: of the nearest one its squared
+// distance in pixels, color, level of detail (negative without any) and number of samples; smallest and largest color
+// of all.
 struct PastAround {
     nearest_px2: f32,
     color: vec3f,

@@ -256,8 +256,8 @@ pub struct Retextured {
     pub word: u32,
 }
 
-/// The color to store, whose albedo was `of_color` before it got the texture. `count`: number of albedos to store; `up`:
-/// uniform in \[0, 1).
+/// The color to store, whose albedo was `of_color` before it got the texture. `count`: number of albedos to store;
+/// `up`: uniform in \[0, 1).
 #[inline]
 pub fn retextured(texture: Texture, of_color: Vec3, count: f32, up: f32) -> Retextured {
     let target = between(of_color, texture.stored, texture.explained);

@@ -26,6 +26,16 @@ const STORED: Word = Of(|d, row| {
     row.extend([0; 6].map(|_| range(d, 0.0, 4.0)));
 });
 
+/// With two stored samples: color of each, and its level of detail, number of samples and squared distance.
+fn two_past(first: Vec3, of_first: Vec3, second: Vec3, of_second: Vec3) -> quads::PastAround {
+    let one = quads::with_past(quads::no_past(), first, of_first.x, of_first.y, of_first.z);
+    quads::with_past(one, second, of_second.x, of_second.y, of_second.z)
+}
+
+const TWO_PAST: &str = "let one = with_past(no_past(), $0, in_f(3u), in_f(4u), in_f(5u)); \
+     let s = with_past(one, $2, in_f(9u), in_f(10u), in_f(11u)); out_f(s.nearest_px2); out_v(s.color); \
+     out_f(s.lod); out_f(s.samples); out_v(s.lowest); out_v(s.highest);";
+
 pub const PROBES: &[Probe] = &[
     probe!(quads::region, |rows| {
         rows.cross(&[&floats(&[0.0, 2.5, 7.0, 90.0]), &floats(&[0.0, 2.5]), &floats(&[0.0, 2.5, 7.5])])
@@ -35,9 +45,9 @@ pub const PROBES: &[Probe] = &[
         let step = |d: &mut Draws, row: &mut Vec<u32>| row.extend([0; 2].map(|_| 1 << (d.bits() % 3)));
         rows.each(&[Of(step), N(2), N(2), N(2), N(2), N(2), N(64), N(64), N(3)])
     }),
-    probe!(quads::no_past, |rows| rows.each(&[])),
-    probe!(quads::with_past, |rows| {
-        rows.each(&[STORED, F(0.0, 4.0), F(0.0, 4.0), F(0.0, 4.0), F(-1.0, 4.0), F(1.0, 29.0), F(0.0, 2.0)])
+    probe!(quads::with_past, two_past, TWO_PAST, |rows| {
+        let sample = [F(0.0, 4.0), F(0.0, 4.0), F(0.0, 4.0), F(-1.0, 4.0), F(1.0, 29.0), F(0.0, 2.0)];
+        rows.each(&[sample, sample].concat())
     }),
     probe!(quads::need_around, |rows| rows.each(&[STORED])),
     probe!(quads::probed_px, |rows| rows.each(&[N(4096), N(4096), Bits])),
