@@ -47,7 +47,8 @@ impl Axis {
     /// # Errors
     /// If the text has another form.
     pub fn parse(text: &str) -> Result<Self, InputError> {
-        let wrong = |problem: String| InputError::request(format!("--axis {text}"), problem, EXPECTED_AXIS);
+        let wrong =
+            |problem: String| InputError::request(format!("--axis {}", text.escape_debug()), problem, EXPECTED_AXIS);
         let (names, values) = text.split_once('=').ok_or_else(|| wrong("has no =".into()))?;
         let separator = if values.contains(';') { ';' } else { ',' };
         let values = values.split(separator).map(str::trim).filter(|v| !v.is_empty());
@@ -61,14 +62,14 @@ impl Axis {
     pub fn new<'a>(names: &str, values: impl IntoIterator<Item = &'a str>) -> Result<Self, String> {
         let options: Vec<String> = names.split('+').map(|n| n.trim().trim_start_matches('-').to_owned()).collect();
         if options.iter().any(|o| !o.bytes().all(|b| b.is_ascii_lowercase() || b == b'-') || o.is_empty()) {
-            return Err(format!("'{names}' is not the name of an option"));
+            return Err(format!("'{}' is not the name of an option", names.escape_debug()));
         }
         let rows = values.into_iter().map(|value| {
             let parts: Vec<_> = value.split('+').map(|v| setting(v.trim())).collect();
             let (found, expected) = (parts.len(), options.len());
             (found == expected)
                 .then_some(parts)
-                .ok_or_else(|| format!("'{value}' has {found} values for {expected} options"))
+                .ok_or_else(|| format!("'{}' has {found} values for {expected} options", value.escape_debug()))
         });
         let values = rows.collect::<Result<Vec<_>, _>>()?;
         if values.is_empty() {

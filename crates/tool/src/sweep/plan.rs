@@ -105,7 +105,7 @@ impl Plan {
         for (names, values) in &file.axes {
             let texts: Vec<String> = values.iter().map(Value::axis_text).collect();
             let axis = Axis::new(names, texts.iter().map(String::as_str));
-            self.put(axis.map_err(|e| wrong(format!("axis {names}: {e}")))?);
+            self.put(axis.map_err(|e| wrong(format!("axis {}: {e}", names.escape_debug())))?);
         }
         for (option, value) in &file.common {
             if let (name, Some(value)) = parse_switch(&format!("{option}={}", value.axis_text())) {
