@@ -159,7 +159,7 @@ fn share(module: &str, settings: &Settings) -> Result<f64> {
         "mip_chain_pass" => 1.0 / 12.0,
         "quad_octants_pass" => shaded_shares(&settings.foveation).iter().sum(),
         // Quads of the fovea are not compared with history.
-        "quad_observe_pass" | "quad_rectify_pass" => shaded_shares(&settings.foveation)[1],
+        "quad_observe_pass" | "quad_observe_albedo_pass" | "quad_rectify_pass" => shaded_shares(&settings.foveation)[1],
         // One workgroup.
         "quad_threshold_pass" => 64.0 / SIZE_PX.map(f64::from).iter().product::<f64>(),
         _ => 1.0,
