@@ -60,7 +60,7 @@ if [ -n "${failed:-}" ]; then
 fi
 
 step "examples"
-# `cargo test` has compiled them. Not here: 09 of the lab, which is long, and the experiments of `crates/research`.
+# `cargo test` has compiled them. Not here: 09 of the lab, which is long.
 for example in 01_planned 02_engine 03_stereo 05_doctor 06_own_mask 07_levels \
     01_moving_camera 02_gpu_moving_camera 03_scanpath 04_gpu_scanpath 05_cpu_fallback 06_debug_views 10_path_trace; do
     printf '\n-- %s\n' "$example"

@@ -16,6 +16,21 @@ fn refuses(args: &[&str], words: &[&str]) {
 }
 
 #[test]
+fn every_experiment_says_its_options() {
+    let listed = succeeds(&["--help"]);
+    let names = listed.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+    let names = names.filter(|line| !line.starts_with("   ")).filter_map(|line| line.split_whitespace().next());
+    let names: Vec<_> = names.filter(|name| *name != "help").collect();
+    assert_eq!(names.len(), 29, "{names:?}");
+    for name in names {
+        let usage = format!("Usage: cargo research {name}");
+        assert!(succeeds(&[name, "--help"]).contains(&usage), "{name}");
+    }
+    refuses(&["quads"], &["<INPUT>", "--help"]);
+    refuses(&["quads", "analytic:lateral", "--frames", "0"], &["1..=100000"]);
+}
+
+#[test]
 fn tells_how_much_of_the_saved_samples_is_saved_time() {
     let folder = Folder::new();
     let json = folder.text("foveated.json");

@@ -1,7 +1,7 @@
 //! Pixels of an SVG. `resvg` rasterizes it with a font from a crate, so that the result does not depend on the fonts of
 //! the machine.
 
-use image::RgbImage;
+use image::{DynamicImage, RgbImage, RgbaImage};
 use resvg::{tiny_skia, usvg};
 use std::sync::Arc;
 
@@ -21,6 +21,6 @@ pub fn png(svg: &str) -> RgbImage {
     pixels.fill(tiny_skia::Color::WHITE);
     resvg::render(&tree, tiny_skia::Transform::from_scale(PNG_SCALE, PNG_SCALE), &mut pixels.as_mut());
     // All pixels are opaque on white, so premultiplied colors are the colors.
-    let rgb = pixels.data().chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
-    RgbImage::from_raw(size[0], size[1], rgb).expect("three bytes a pixel")
+    let rgba = RgbaImage::from_raw(size[0], size[1], pixels.take()).expect("four bytes a pixel");
+    DynamicImage::from(rgba).into_rgb8()
 }
