@@ -48,12 +48,12 @@ pub(super) fn read(input: &str, limits: &SceneLimits) -> Result<Container, Input
     if matches!(json, [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..]) {
         return Err(InputError::invalid(input, "is UTF-16 text", "expected UTF-8; save it in this encoding"));
     }
-    let unreadable = |e: serde_json::Error| {
-        let problem = format!("is not a glTF 2.0 file: {}", printable(&e.to_string()));
+    let unreadable = |problem: String| {
+        let problem = format!("is not a glTF 2.0 file: {}", printable(&problem));
         InputError::invalid(input, problem, "expected JSON as the glTF 2.0 specification describes it; export it again")
     };
-    let mut value: serde_json::Value = serde_json::from_slice(json).map_err(unreadable)?;
-    let preamble = Preamble::deserialize(&value).map_err(unreadable)?;
+    let mut value: serde_json::Value = serde_json::from_slice(json).map_err(|e| unreadable(e.to_string()))?;
+    let preamble = Preamble::deserialize(&value).map_err(|e| unreadable(e.to_string()))?;
     if !preamble.asset.version.starts_with("2.") {
         let problem = format!("is of glTF version {}", printable(&preamble.asset.version));
         return Err(InputError::not_supported(input, problem, "expected version 2.0; convert it"));
@@ -61,13 +61,24 @@ pub(super) fn read(input: &str, limits: &SceneLimits) -> Result<Container, Input
     extensions::check_required(input, preamble.extensions_required.as_deref().unwrap_or_default())?;
     let mut warnings = Warnings::default();
     complete::complete(&mut value, &mut warnings);
-    let root = match Root::deserialize(&value) {
-        Err(_) if complete::make_plain(&mut value, &mut warnings) => serde_json::from_value(value),
+    let root = match root(&value) {
+        Err(_) if complete::make_plain(&mut value, &mut warnings) => root(&value),
         first => first,
     };
     let root = root.map_err(unreadable)?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
     Ok(Container { subject: input.to_owned(), folder, root, bytes, binary, warnings })
+}
+
+/// The description in the crate's types, or what is wrong with it. By way of text: types read from a [`serde_json::Value`]
+/// are compiled in this crate, which took a third of its time.
+fn root(value: &serde_json::Value) -> Result<Root, String> {
+    // The position would be one in that text.
+    let without_position = |e: serde_json::Error| {
+        let (text, position) = (e.to_string(), format!(" at line {} column {}", e.line(), e.column()));
+        text.strip_suffix(&position).unwrap_or(&text).to_owned()
+    };
+    Root::from_str(&value.to_string()).map_err(without_position)
 }
 
 /// JSON without a byte order mark in front, and without the NUL bytes that some writers pad it with.
