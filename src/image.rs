@@ -41,7 +41,7 @@ impl<T: Copy> Image<T> {
 
     /// An image whose pixel (x, y) is `f([x, y])`.
     pub fn from_fn(size: [u32; 2], mut f: impl FnMut([u32; 2]) -> T) -> Self {
-        // Loops, since tests call this in hundreds of places: iterators, compiled for each, took a tenth of their build.
+        // Loops, since tests call this in hundreds of places: iterators for each took a tenth of their build.
         let mut pixels = Vec::with_capacity(size[0] as usize * size[1] as usize);
         for y in 0..size[1] {
             for x in 0..size[0] {

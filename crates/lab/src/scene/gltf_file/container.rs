@@ -70,8 +70,8 @@ pub(super) fn read(input: &str, limits: &SceneLimits) -> Result<Container, Input
     Ok(Container { subject: input.to_owned(), folder, root, bytes, binary, warnings })
 }
 
-/// The description in the crate's types, or what is wrong with it. By way of text: types read from a [`serde_json::Value`]
-/// are compiled in this crate, which took a third of its time.
+/// The description in the crate's types, or what is wrong with it. By way of text: types read from a
+/// [`serde_json::Value`] are compiled in this crate, which took a third of its code.
 fn root(value: &serde_json::Value) -> Result<Root, String> {
     // The position would be one in that text.
     let without_position = |e: serde_json::Error| {
