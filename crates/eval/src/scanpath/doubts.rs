@@ -7,6 +7,8 @@ use super::{Sample, Scanpath};
 const LEAST_HZ: f64 = 10.0;
 /// Samples a second above which times are hardly what their unit says. The fastest trackers give 5000.
 const MOST_HZ: f64 = 10_000.0;
+/// Share of a recording that one pause hardly is.
+const PAUSE_SHARE: f64 = 0.9;
 /// Share of the valid samples within a pixel of a corner from which coordinates are hardly pixels. Not all: gaze from 0
 /// to 1 may lie a little off the screen.
 const CORNER_SHARE: f64 = 0.9;
@@ -17,7 +19,7 @@ impl Scanpath {
     /// What looks wrong, one line each: all gaze within a pixel of a corner (coordinates from 0 to 1?), fewer than ten
     /// samples a second (milliseconds?) or more than 10000 (seconds?), more than half of the gaze lost.
     pub fn warnings(&self) -> Vec<String> {
-        [self.corner(), self.doubt_of_times(), self.too_fast(), self.loss()]
+        [self.corner(), self.too_slow(), self.too_fast(), self.loss()]
             .into_iter()
             .flatten()
             .map(|doubt| format!("{}: {doubt}", self.name()))
@@ -42,11 +44,23 @@ impl Scanpath {
         })
     }
 
-    /// The warning of fewer than ten samples a second, without the name of the scanpath.
+    /// Why a long recording may have wrong times, without the name of the scanpath: fewer than ten samples a second, or
+    /// one pause that is nearly all of it.
     pub fn doubt_of_times(&self) -> Option<String> {
+        self.too_slow().or_else(|| self.pause())
+    }
+
+    fn too_slow(&self) -> Option<String> {
         let median = self.median_step_s()?;
         (median * LEAST_HZ > 1.0)
             .then(|| format!("{}; are the times milliseconds? Divide them by 1000", self.rate_of(median)))
+    }
+
+    fn pause(&self) -> Option<String> {
+        let steps = self.samples().windows(2).map(|pair| (pair[0].t_s, pair[1].t_s - pair[0].t_s));
+        let (start_s, pause_s) = steps.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (self.samples().len() > 2 && pause_s > PAUSE_SHARE * self.duration_s())
+            .then(|| format!("no sample for {pause_s:.3e} s after {start_s:.3} s; is a time wrong? Mend or cut it"))
     }
 
     fn too_fast(&self) -> Option<String> {

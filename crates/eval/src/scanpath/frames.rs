@@ -70,7 +70,7 @@ impl FrameGaze {
             first_s: path.begin_s() + start_s,
             fps,
             // A float to integer cast saturates.
-            frames: ((left_s + TIME_SLACK_S) * fps).floor().max(0.0) as u64 + 1,
+            frames: (((left_s + TIME_SLACK_S) * fps).floor().max(0.0) as u64).saturating_add(1),
         })
     }
 

@@ -85,6 +85,11 @@ fn a_run_does_not_start_with_times_that_are_hardly_seconds() {
     let said =
         ["ms.csv: 90 samples in 1424.000 s are 0.06 a second", "milliseconds?", "--frames (85441 for all of it)"];
     refuses(&[&command[..], &["--gaze", &milliseconds]].concat(), &said);
+    // One wrong time: more frames than there are numbers.
+    let wrong = folder.write("wrong.csv", format!("{head}0,1,1,1\n0.004,2,2,1\n0.008,3,3,1\n7e20,4,4,1\n").as_bytes());
+    let said =
+        ["wrong.csv: no sample for 7.000e20 s after 0.008 s; is a time wrong?", "--frames (18446744073709551615"];
+    refuses(&[&command[..], &["--gaze", &wrong]].concat(), &said);
     assert!(!folder.path("out").exists());
     // A number of frames, times in seconds, and few samples in a short clip.
     for (gaze, more, warned) in
