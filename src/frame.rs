@@ -157,6 +157,45 @@ pub struct FrameInputs<'a, Colors, Scalars, Vectors> {
     pub exposure: Exposure,
 }
 
+/// An input of a frame, given or not.
+pub(crate) struct Input<Colors, Scalars, Vectors> {
+    /// Name of its field in [`FrameInputs`].
+    pub name: &'static str,
+    /// Whether it is known before the frame is shaded.
+    pub is_geometry: bool,
+    pub images: Option<Images<Colors, Scalars, Vectors>>,
+}
+
+/// Images of an input.
+#[derive(Clone, Copy)]
+pub(crate) enum Images<Colors, Scalars, Vectors> {
+    Colors(Colors),
+    /// Colors of half the width and height, rounded up.
+    HalfColors(Colors),
+    Scalars(Scalars),
+    Vectors(Vectors),
+}
+
+impl<Colors, Scalars, Vectors> Images<Colors, Scalars, Vectors> {
+    /// Width and height, in frames of `whole_px`.
+    pub fn size_px(&self, whole_px: [u32; 2]) -> [u32; 2] {
+        match self {
+            Self::HalfColors(_) => whole_px.map(|side| side.div_ceil(2)),
+            _ => whole_px,
+        }
+    }
+
+    /// Least number of channels.
+    #[cfg(feature = "gpu")]
+    pub fn channels(&self) -> u8 {
+        match self {
+            Self::Colors(_) | Self::HalfColors(_) => 3,
+            Self::Vectors(_) => 2,
+            Self::Scalars(_) => 1,
+        }
+    }
+}
+
 impl<'a, Colors, Scalars, Vectors> FrameInputs<'a, Colors, Scalars, Vectors> {
     /// Implementation of `new` of both executors.
     pub(crate) fn of_color(color: Colors, views: &'a [ViewFrame], index: u64) -> Self {
@@ -178,13 +217,27 @@ impl<'a, Colors, Scalars, Vectors> FrameInputs<'a, Colors, Scalars, Vectors> {
         }
     }
 
-    /// Inputs of one number a pixel that are known before a frame is shaded, with their names.
-    #[cfg(feature = "cpu")]
-    pub(crate) fn scalars(&self) -> [(&'static str, Option<Scalars>); 4]
+    /// All inputs, given or not.
+    pub(crate) fn inputs(&self) -> [Input<Colors, Scalars, Vectors>; 10]
     where
+        Colors: Copy,
         Scalars: Copy,
+        Vectors: Copy,
     {
-        [("depth", self.depth), ("trust", self.trust), ("reactive", self.reactive), ("lod", self.lod)]
+        let geometry = |name, images| Input { name, is_geometry: true, images };
+        let shaded = |name, images| Input { name, is_geometry: false, images };
+        [
+            shaded("color", Some(Images::Colors(self.color))),
+            geometry("depth", self.depth.map(Images::Scalars)),
+            geometry("motion", self.motion.map(Images::Vectors)),
+            geometry("trust", self.trust.map(Images::Scalars)),
+            geometry("reactive", self.reactive.map(Images::Scalars)),
+            shaded("lod", self.lod.map(Images::Scalars)),
+            shaded("noise", self.noise.map(Images::Vectors)),
+            shaded("albedo", self.albedo.map(Images::Colors)),
+            shaded("mask", self.mask.map(Images::Scalars)),
+            shaded("half", self.half.map(Images::HalfColors)),
+        ]
     }
 
     /// Checks all fields except the images.

@@ -2,9 +2,10 @@
 
 use crate::context::ContextDesc;
 use crate::error::FrameError;
-use crate::frame::FrameInputs;
+use crate::frame::{self, FrameInputs, Images};
 use crate::image::Image;
 use crate::view::ViewFrame;
+use std::borrow::Borrow;
 
 /// A frame whose inputs are slices with one image a view; fields are at [`FrameInputs`].
 ///
@@ -21,6 +22,8 @@ use crate::view::ViewFrame;
 /// ```
 pub type Frame<'a> = FrameInputs<'a, &'a [&'a Image<[f32; 3]>], &'a [&'a Image<f32>], &'a [&'a Image<[f32; 2]>]>;
 
+type Input<'a> = frame::Input<&'a [&'a Image<[f32; 3]>], &'a [&'a Image<f32>], &'a [&'a Image<[f32; 2]>]>;
+
 impl<'a> Frame<'a> {
     /// A frame without optional inputs, which continues the previous frame: no reset, unchanged exposure. `color`: one
     /// image a view.
@@ -33,54 +36,45 @@ impl<'a> Frame<'a> {
     where
         'a: 'b,
     {
-        let Self { depth, motion, trust, reactive, lod, noise, albedo, mask, half, views, index, .. } = *self;
-        let (reset, exposure) = (self.reset, self.exposure);
-        Frame { color, depth, motion, trust, reactive, lod, noise, albedo, mask, half, views, index, reset, exposure }
+        let shorter: Frame<'b> = *self;
+        Frame { color, ..shorter }
     }
 }
 
 /// Checks a frame without its outputs.
 pub(super) fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
     frame.check(desc)?;
-    check_sizes(desc, "color", Some(frame.color.iter().map(|i| i.size())))?;
-    let half = desc.size_px.map(|side| side.div_ceil(2));
-    check_sizes_of(desc, "half", frame.half.map(|h| h.iter().map(|i| i.size())), half)?;
-    check_geometry(desc, frame)?;
-    check_sizes(desc, "albedo", frame.albedo.map(|a| a.iter().map(|i| i.size())))?;
-    check_sizes(desc, "mask", frame.mask.map(|m| m.iter().map(|i| i.size())))?;
-    check_sizes(desc, "noise", frame.noise.map(|n| n.iter().map(|i| i.size())))
+    frame.inputs().iter().try_for_each(|input| check_input(desc, input))
 }
 
 /// Checks the sizes of the inputs that are known before a frame is shaded.
 pub(super) fn check_geometry(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
-    for (name, images) in frame.scalars() {
-        check_sizes(desc, name, images.map(|images| images.iter().map(|i| i.size())))?;
+    frame.inputs().iter().filter(|input| input.is_geometry).try_for_each(|input| check_input(desc, input))
+}
+
+/// Checks that an input, if given, has one image of its size for each view.
+fn check_input(desc: &ContextDesc, input: &Input<'_>) -> Result<(), FrameError> {
+    let Some(images) = input.images else { return Ok(()) };
+    let expected_px = images.size_px(desc.size_px);
+    match images {
+        Images::Colors(images) | Images::HalfColors(images) => check_sizes(desc, input.name, images, expected_px),
+        Images::Scalars(images) => check_sizes(desc, input.name, images, expected_px),
+        Images::Vectors(images) => check_sizes(desc, input.name, images, expected_px),
     }
-    check_sizes(desc, "motion", frame.motion.map(|m| m.iter().map(|i| i.size())))
 }
 
-/// Checks that an input, if given, has one image of the context's size for each view.
-pub(super) fn check_sizes(
+/// Checks that there is one image of `expected_px` for each view.
+pub(super) fn check_sizes<T: Copy>(
     desc: &ContextDesc,
     input: &'static str,
-    sizes: Option<impl ExactSizeIterator<Item = [u32; 2]>>,
-) -> Result<(), FrameError> {
-    check_sizes_of(desc, input, sizes, desc.size_px)
-}
-
-/// Checks that an input, if given, has one image of `expected` pixels for each view.
-fn check_sizes_of(
-    desc: &ContextDesc,
-    input: &'static str,
-    sizes: Option<impl ExactSizeIterator<Item = [u32; 2]>>,
+    images: &[impl Borrow<Image<T>>],
     expected_px: [u32; 2],
 ) -> Result<(), FrameError> {
-    let Some(sizes) = sizes else { return Ok(()) };
-    let (found, expected) = (sizes.len(), desc.view_count as usize);
+    let (found, expected) = (images.len(), desc.view_count as usize);
     if found != expected {
         return Err(FrameError::ViewCount { found, expected });
     }
-    for (view, found) in sizes.enumerate() {
+    for (view, found) in images.iter().map(|image| image.borrow().size()).enumerate() {
         if found != expected_px {
             return Err(FrameError::Size { input, view, found, expected: expected_px });
         }

@@ -82,8 +82,8 @@ impl CpuAfterimage {
         traces: Option<&mut [Image<PixelTrace>]>,
     ) -> Result<FrameStats, FrameError> {
         assert_eq!(self.desc.settings.algorithm(), Algorithm::Reconstruction);
-        check_sizes(&self.desc, "alpha", Some(alpha.iter().map(|i| i.size())))?;
-        check_sizes(&self.desc, "alpha", Some(shown_alpha.iter().map(Image::size)))?;
+        check_sizes(&self.desc, "alpha", alpha, self.desc.size_px)?;
+        check_sizes(&self.desc, "alpha", shown_alpha, self.desc.size_px)?;
         self.history.keep_alpha();
         self.run(frame, output, Some(Alpha { given: alpha, output: shown_alpha }), traces, None)
     }
@@ -296,8 +296,8 @@ impl CpuAfterimage {
         let given = frame.mask.map(|masks| planned::given_quads(&self.desc, masks));
         let planned = self.planned.as_ref().map(|planned| &planned.quads);
         let quads = given.as_ref().or(planned).map_or(&[][..], |quads| quads);
-        check_sizes(&self.desc, "output", Some(output.iter().map(Image::size)))?;
-        check_sizes(&self.desc, "traces", traces.as_deref().map(|t| t.iter().map(Image::size)))?;
+        check_sizes(&self.desc, "output", output, self.desc.size_px)?;
+        traces.as_deref().map_or(Ok(()), |traces| check_sizes(&self.desc, "traces", traces, self.desc.size_px))?;
         let fills = self.desc.settings.stages().contains(&Stage::Fill);
         let filled = if fills { fill::filled(frame, self.desc.size_px, quads) } else { vec![] };
         let filled: Vec<_> = filled.iter().collect();

@@ -44,32 +44,29 @@ pub enum Binding {
     QuadAround,
 }
 
-/// An input of a frame.
+/// Binding of an input of a frame.
 #[derive(Debug)]
 #[allow(missing_docs, reason = "outside the crate for its tests alone")]
-pub struct Input {
+pub struct InputBinding {
     pub binding: Binding,
+    /// Name of the input's field in [`FrameInputs`](crate::frame::FrameInputs).
     pub name: &'static str,
-    /// Least number of channels.
-    pub channels: u8,
-    /// Whether it is known before the frame is shaded.
-    pub is_geometry: bool,
     /// `override` of the shaders that says whether a frame has it, if they need to know.
     pub has: Option<&'static str>,
 }
 
-/// The inputs of a frame.
-pub const INPUTS: [Input; 10] = [
-    Input { binding: Binding::Color, name: "color", channels: 3, is_geometry: false, has: None },
-    Input { binding: Binding::Depth, name: "depth", channels: 1, is_geometry: true, has: Some("HAS_DEPTH") },
-    Input { binding: Binding::Motion, name: "motion", channels: 2, is_geometry: true, has: Some("HAS_MOTION") },
-    Input { binding: Binding::Trust, name: "trust", channels: 1, is_geometry: true, has: Some("HAS_TRUST_MASK") },
-    Input { binding: Binding::Reactive, name: "reactive", channels: 1, is_geometry: true, has: Some("HAS_REACTIVE") },
-    Input { binding: Binding::Lod, name: "lod", channels: 1, is_geometry: false, has: Some("HAS_LOD") },
-    Input { binding: Binding::Noise, name: "noise", channels: 2, is_geometry: false, has: None },
-    Input { binding: Binding::Albedo, name: "albedo", channels: 3, is_geometry: false, has: None },
-    Input { binding: Binding::Mask, name: "mask", channels: 1, is_geometry: true, has: None },
-    Input { binding: Binding::Half, name: "half", channels: 3, is_geometry: false, has: None },
+/// Bindings of the inputs of a frame.
+pub const INPUTS: [InputBinding; 10] = [
+    InputBinding { binding: Binding::Color, name: "color", has: None },
+    InputBinding { binding: Binding::Depth, name: "depth", has: Some("HAS_DEPTH") },
+    InputBinding { binding: Binding::Motion, name: "motion", has: Some("HAS_MOTION") },
+    InputBinding { binding: Binding::Trust, name: "trust", has: Some("HAS_TRUST_MASK") },
+    InputBinding { binding: Binding::Reactive, name: "reactive", has: Some("HAS_REACTIVE") },
+    InputBinding { binding: Binding::Lod, name: "lod", has: Some("HAS_LOD") },
+    InputBinding { binding: Binding::Noise, name: "noise", has: None },
+    InputBinding { binding: Binding::Albedo, name: "albedo", has: None },
+    InputBinding { binding: Binding::Mask, name: "mask", has: None },
+    InputBinding { binding: Binding::Half, name: "half", has: None },
 ];
 
 impl Binding {

@@ -1,8 +1,8 @@
 //! Inputs and outputs of one frame on a GPU.
 
 use super::Textures;
-use super::binding::Binding;
-use crate::frame::{Exposure, FrameInputs};
+use super::binding::INPUTS;
+use crate::frame::{FrameInputs, Images, Input};
 use crate::kernel::debug_view::DebugView;
 use crate::uniforms::{MAX_VIEWS, ORIGINS};
 use crate::view::ViewFrame;
@@ -24,17 +24,32 @@ impl<'a> Frame<'a> {
     /// Inputs, by the numbers of their bindings.
     pub(super) fn textures(&self) -> [Option<Textures<'a>>; ORIGINS] {
         let mut all = [None; ORIGINS];
-        all[Binding::Color as usize] = Some(self.color);
-        all[Binding::Depth as usize] = self.depth;
-        all[Binding::Motion as usize] = self.motion;
-        all[Binding::Trust as usize] = self.trust;
-        all[Binding::Reactive as usize] = self.reactive;
-        all[Binding::Lod as usize] = self.lod;
-        all[Binding::Noise as usize] = self.noise;
-        all[Binding::Albedo as usize] = self.albedo;
-        all[Binding::Mask as usize] = self.mask;
-        all[Binding::Half as usize] = self.half;
+        for Input { name, images, .. } in self.inputs() {
+            let input = INPUTS.iter().find(|input| input.name == name).expect("every input has a binding");
+            all[input.binding as usize] = images.map(Images::textures);
+        }
         all
+    }
+
+    /// Optional inputs of which the shaders know whether a frame has them: a set of [bits](Binding::bit).
+    pub(super) fn present(&self) -> u32 {
+        let textures = self.textures();
+        let given = INPUTS.iter().filter(|input| input.has.is_some() && textures[input.binding as usize].is_some());
+        given.map(|input| input.binding.bit()).sum()
+    }
+
+    /// Whether an input consists of regions.
+    pub(super) fn has_regions(&self) -> bool {
+        self.textures().iter().flatten().any(Textures::is_regions)
+    }
+}
+
+impl<'a> Images<Textures<'a>, Textures<'a>, Textures<'a>> {
+    pub(super) fn textures(self) -> Textures<'a> {
+        match self {
+            Self::Colors(textures) | Self::HalfColors(textures) => textures,
+            Self::Scalars(textures) | Self::Vectors(textures) => textures,
+        }
     }
 }
 
@@ -100,64 +115,6 @@ impl<'a> From<&'a Texture> for Target<'a> {
 impl<'a> From<Textures<'a>> for Target<'a> {
     fn from(output: Textures<'a>) -> Self {
         Self::new(output)
-    }
-}
-
-/// Which inputs and outputs a frame and its target have: each combination has its own pipelines.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Variant {
-    /// Whether there is a depth input.
-    pub depth: bool,
-    /// Whether there are motion vectors.
-    pub motion: bool,
-    /// Whether there is a trust mask.
-    pub trust: bool,
-    /// Whether there is a reactive mask.
-    pub reactive: bool,
-    /// Whether there are levels of detail.
-    pub lod: bool,
-    /// Whether there is a buffer for counters.
-    pub counters: bool,
-    /// Whether an input or output consists of [`Regions`](Textures::Regions).
-    pub regions: bool,
-    /// Whether colors are radiance ([`Exposure::Scene`](crate::Exposure::Scene)).
-    pub exposure: bool,
-    /// View of the [`DebugTarget`], if any.
-    pub debug: Option<DebugView>,
-}
-
-impl Variant {
-    /// Its optional inputs, and counters: a set of [bits](Binding::bit).
-    pub(super) fn bindings(self) -> u32 {
-        let list = [
-            (Binding::Depth, self.depth),
-            (Binding::Motion, self.motion),
-            (Binding::Trust, self.trust),
-            (Binding::Reactive, self.reactive),
-            (Binding::Lod, self.lod),
-            (Binding::Counters, self.counters),
-        ];
-        list.iter().map(|&(binding, is_present)| if is_present { binding.bit() } else { 0 }).sum()
-    }
-
-    /// Variant of a frame and its target.
-    pub fn of(frame: &Frame<'_>, target: &Target<'_>) -> Self {
-        Self {
-            depth: frame.depth.is_some(),
-            motion: frame.motion.is_some(),
-            trust: frame.trust.is_some(),
-            reactive: frame.reactive.is_some(),
-            lod: frame.lod.is_some(),
-            counters: target.counters.is_some(),
-            regions: frame.textures().iter().flatten().any(Textures::is_regions) || target.has_regions(),
-            exposure: matches!(frame.exposure, Exposure::Scene { .. }),
-            debug: target.debug.map(|d| d.view),
-        }
-    }
-
-    /// Variant of the plan of a frame: the color is not read, but its regions decide how views are processed.
-    pub fn of_plan(frame: &Frame<'_>) -> Self {
-        Self::of(frame, &Target::new(frame.color))
     }
 }
 

@@ -1,10 +1,10 @@
 //! Validation of a frame before its passes are recorded.
 
-use super::binding::{Binding, INPUTS, Input};
 use super::output::DEBUG_FORMAT;
 use super::{Afterimage, Frame, Target, Textures};
 use crate::context::ContextDesc;
 use crate::error::{FrameError, FrameValue};
+use crate::frame::Input;
 use crate::stats::FrameStats;
 use wgpu::{Buffer, BufferUsages, Device, Texture, TextureAspect, TextureFormat, TextureSampleType, TextureUsages};
 
@@ -41,14 +41,13 @@ pub(super) fn check(
 /// Checks a frame without its target.
 pub(super) fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
     frame.check(desc)?;
-    INPUTS.iter().try_for_each(|input| check_input(desc, frame, input))
+    frame.inputs().iter().try_for_each(|input| check_input(desc, input))
 }
 
 /// Checks that an output shares no layer of a texture with an input: a pass cannot read a layer and write it, not even
 /// other regions of it.
 fn check_apart(output: &'static str, written: Textures<'_>, frame: &Frame<'_>) -> Result<(), FrameError> {
-    let textures = frame.textures();
-    for (Input { name, .. }, read) in INPUTS.iter().filter_map(|i| Some((i, textures[i.binding as usize]?))) {
+    for (name, read) in frame.inputs().iter().filter_map(|input| Some((input.name, input.images?.textures()))) {
         let meets = |layers: [Option<u32>; 2]| layers.contains(&None) || layers[0] == layers[1];
         let shared = written.parts().find(|&(a, i)| read.parts().any(|(b, j)| a == b && meets([i, j])));
         if let Some((texture, _)) = shared {
@@ -61,18 +60,15 @@ fn check_apart(output: &'static str, written: Textures<'_>, frame: &Frame<'_>) -
 
 /// Checks the parts of a frame that are known before it is shaded.
 pub(super) fn check_geometry(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
-    INPUTS.iter().filter(|input| input.is_geometry).try_for_each(|input| check_input(desc, frame, input))
+    frame.inputs().iter().filter(|input| input.is_geometry).try_for_each(|input| check_input(desc, input))
 }
 
 /// Checks place, usage and format of an input.
-fn check_input(desc: &ContextDesc, frame: &Frame<'_>, input: &Input) -> Result<(), FrameError> {
-    let Some(textures) = frame.textures()[input.binding as usize] else { return Ok(()) };
-    let mut desc = *desc;
-    if input.binding == Binding::Half {
-        desc.size_px = desc.size_px.map(|side| side.div_ceil(2));
-    }
-    check_textures(&desc, input.name, textures, Afterimage::INPUT_USAGE)?;
-    textures.iter().try_for_each(|texture| check_readable(input.name, texture, input.channels))
+fn check_input(desc: &ContextDesc, input: &Input<Textures<'_>, Textures<'_>, Textures<'_>>) -> Result<(), FrameError> {
+    let Some(images) = input.images else { return Ok(()) };
+    let desc = ContextDesc { size_px: images.size_px(desc.size_px), ..*desc };
+    check_textures(&desc, input.name, images.textures(), Afterimage::INPUT_USAGE)?;
+    images.textures().iter().try_for_each(|texture| check_readable(input.name, texture, images.channels()))
 }
 
 /// Storage textures of a pass that also writes a debug view: output, view, and at most three of history.

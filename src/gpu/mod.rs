@@ -34,7 +34,6 @@ pub(crate) mod uniforms;
 pub use doctor::Doctor;
 #[doc(hidden)]
 pub use frame::Frame;
-use frame::Variant;
 pub use frame::{DebugTarget, Recorded, Target, Timestamps};
 pub(crate) use input::{check_readable, check_texture};
 pub(crate) use output::texel;
@@ -306,7 +305,7 @@ impl Afterimage {
     /// Drivers may finish compilation at the first dispatch (software Vulkan does): record a frame while loading to
     /// force that, too.
     pub fn prewarm<'t>(&self, device: &Device, frame: &Frame<'_>, target: impl Into<Target<'t>>) {
-        let special = Specialization::new(Variant::of(frame, &target.into()), None, self.generation);
+        let special = Specialization::of(frame, &target.into(), None, self.generation);
         // Planned frames of whole quads, and those that begin with a quarter.
         let is_planned = self.quads.is_some();
         if !(is_planned && self.desc.settings.foveation.single_pixels) {
@@ -314,7 +313,7 @@ impl Afterimage {
         }
         if let Some(quads) = &self.quads {
             self.stages.prewarm(device, &self.desc, special.partial(true));
-            let plan = Specialization::new(Variant::of_plan(frame), None, self.generation);
+            let plan = Specialization::of_plan(frame, self.generation);
             quads.prewarm(device, &self.desc, plan);
         }
     }
@@ -396,7 +395,7 @@ impl Afterimage {
         input::check_geometry(&self.desc, frame)?;
         let is_quarter = self.starts_with_quarter(frame);
         let (uniforms, ..) = self.prepare(frame, is_quarter);
-        let special = Specialization::new(Variant::of_plan(frame), None, self.generation);
+        let special = Specialization::of_plan(frame, self.generation);
         self.recorder.begin(0);
         let mut job = Job {
             device,
@@ -544,7 +543,7 @@ impl Afterimage {
             desc: &self.desc,
             textures,
             counters: target.counters,
-            special: Specialization::new(Variant::of(frame, target), view, self.generation).partial(is_partial),
+            special: Specialization::of(frame, target, view, self.generation).partial(is_partial),
             uniforms,
             history: &self.history,
             rectified: None,

@@ -8,15 +8,16 @@ use super::quads::Quads;
 use super::recorder::{Recorder, Workgroups};
 use super::textures::{Batch, batches};
 use super::uniforms::FrameUniforms;
-use super::{Textures, Variant};
+use super::{Frame, Target, Textures};
 use crate::context::ContextDesc;
+use crate::frame::Exposure;
 use crate::kernel::debug_view::DebugView;
 use crate::method::{HistoryLayout, Overrides};
 use crate::uniforms::ORIGINS;
 use std::fmt::Debug;
 use wgpu::{Buffer, Device, TextureView};
 
-/// Which inputs and outputs a frame has, and other properties that its pipelines are specialized to.
+/// Which inputs and outputs a frame has, and other properties: each combination has its own pipelines.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Specialization {
     /// Set of [bits](Binding::bit).
@@ -34,16 +35,22 @@ pub(super) struct Specialization {
 }
 
 impl Specialization {
-    pub fn new(variant: Variant, view: Option<DebugView>, generation: u64) -> Self {
+    /// Properties of a frame with whole quads, and of its target.
+    pub fn of(frame: &Frame<'_>, target: &Target<'_>, view: Option<DebugView>, generation: u64) -> Self {
         Self {
-            present: variant.bindings(),
-            has_regions: variant.regions,
-            is_exposed: variant.exposure,
+            present: frame.present() | target.counters.map_or(0, |_| Binding::Counters.bit()),
+            has_regions: frame.has_regions() || target.has_regions(),
+            is_exposed: matches!(frame.exposure, Exposure::Scene { .. }),
             view,
-            debug: variant.debug,
+            debug: target.debug.map(|debug| debug.view),
             is_partial: false,
             generation,
         }
+    }
+
+    /// Properties of the plan of a frame: the color is not read, but its regions decide how views are processed.
+    pub fn of_plan(frame: &Frame<'_>, generation: u64) -> Self {
+        Self::of(frame, &Target::new(frame.color), None, generation)
     }
 
     /// The same for frames whose quads may be shaded in part, or not.

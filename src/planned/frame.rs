@@ -85,6 +85,26 @@ pub struct Quarter {
 }
 
 impl Plan {
+    /// A plan without lists and quarters.
+    pub(super) fn new(frame: &Frame<'_>, index: u64, views: Vec<ViewFrame>, mask: Texture) -> Self {
+        Self {
+            index,
+            views,
+            cameras: vec![],
+            depth: frame.depth.clone(),
+            motion: frame.motion.cloned(),
+            reactive: frame.reactive.cloned(),
+            noise: frame.noise.cloned(),
+            albedo: frame.albedo.cloned(),
+            given: None,
+            is_cut: frame.is_cut,
+            exposure: frame.exposure,
+            mask,
+            lists: vec![],
+            quarters: vec![],
+        }
+    }
+
     /// The shaded pixels, for compute shaders: an `R32Uint` texture with a texel for each quad of 2x2 pixels, whose
     /// bits 0 to 3 say which of its pixels are shaded, row by row, and bits 8 to 12 how many paths each of them gets
     /// where frames are [path-traced](super::Desc::is_noisy). A [given](super::Afterimage::given) mask is not in it.

@@ -215,22 +215,7 @@ impl Afterimage {
             let (found, expected) = ("missing".into(), "a context of planned frames");
             return Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected });
         };
-        Ok(Plan {
-            index: self.index,
-            views,
-            cameras,
-            depth: frame.depth.clone(),
-            motion: frame.motion.cloned(),
-            reactive: frame.reactive.cloned(),
-            noise: frame.noise.cloned(),
-            albedo: frame.albedo.cloned(),
-            given: None,
-            is_cut: frame.is_cut,
-            exposure: frame.exposure,
-            mask,
-            lists,
-            quarters: vec![],
-        })
+        Ok(Plan { cameras, lists, ..Plan::new(frame, self.index, views, mask) })
     }
 
     /// Records a pass that closes a depth buffer for the pixels that are not shaded: it writes the near plane's depth
