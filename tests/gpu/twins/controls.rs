@@ -1,12 +1,11 @@
 //! Planted errors in the shaders, of each module: the comparison of the function with its Rust twin must find them.
 
-use super::probe::caught;
+use super::probe::{caught, leaves_out};
 
 /// A function, a text of its source, and what stands there instead.
 const PLANTED: &[(&str, &str, &str)] = &[
     ("reservoir::combine", "draw * w_sum < w2", "draw * w_sum <= w2"),
     ("wrs::decide_sample", "draw * w_sum < candidate_w", "draw * w_sum <= candidate_w"),
-    ("wrs::decide_sample", "weight(past.w_sum * survival)", "past.w_sum * survival"),
     ("acuity::candidate_weight", "* inv_density_at_fovea", "* (1.01 * inv_density_at_fovea)"),
     ("reproject::nearest", "f32(x) + motion.x", "f32(x) - motion.x"),
     ("reproject::camera_vector", "disparity <= motion.sky", "disparity < motion.sky"),
@@ -70,7 +69,6 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ("reconstruction::mean_fit", "sqrt(a.squared) * inverse)) * MEAN_ERRORS", "inverse)) * MEAN_ERRORS"),
     ("reconstruction::reconstruct", "share >= KEEP_SHARE && near", "share >= KEEP_SHARE"),
     ("reconstruction::accumulate", "near && share >= STAY_SHARE", "share >= STAY_SHARE"),
-    ("depth::disparity", "if v < 1e-30", "if v < 1e-29"),
     ("demodulation::add_albedo", "select(own.xyz, there.xyz, there.w > 0.0)", "there.xyz"),
     ("demodulation::past_albedo", "> 1.0f / ALBEDO_STEPS", "> 2.0f / ALBEDO_STEPS"),
     ("demodulation::pack_albedo", "* ALBEDO_STEPS + up", "* ALBEDO_STEPS + 0.5"),
@@ -82,4 +80,19 @@ const PLANTED: &[(&str, &str, &str)] = &[
 #[test]
 fn planted_errors_are_caught() {
     caught(PLANTED);
+}
+
+/// Errors that show only in rows with numbers below 2^-64.
+const PLANTED_IN_SMALL_NUMBERS: &[(&str, &str, &str)] = &[
+    ("wrs::decide_sample", "weight(past.w_sum * survival)", "past.w_sum * survival"),
+    ("depth::disparity", "if v < 1e-30", "if v < 1e-29"),
+];
+
+#[test]
+fn planted_errors_in_small_numbers_are_caught() {
+    if leaves_out() {
+        println!("such rows are not compared: the adapter flushes denormals to zero or rounds otherwise");
+        return;
+    }
+    caught(PLANTED_IN_SMALL_NUMBERS);
 }

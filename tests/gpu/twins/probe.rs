@@ -147,7 +147,7 @@ fn may_differ(count: usize) -> usize {
 
 /// Whether rows are left out whose floats are [`outside`]: for recordings, and on an adapter that flushes denormals or
 /// rounds otherwise.
-fn leaves_out() -> bool {
+pub fn leaves_out() -> bool {
     let all = afterimage_testing::gpu::arithmetic().is_none_or(|a| a.keeps_denormals && a.rounds_as_the_cpu);
     !all || afterimage_testing::gpu::is_recorded()
 }
