@@ -1,5 +1,6 @@
-//! Loops on all cores, with the widest vector instructions of the processor. Bodies are called through pointers, a call
-//! a row: `rayon` is compiled for each type of rows, and not for each body, of which tests have hundreds.
+//! Loops on all cores, with the widest vector instructions of the processor. Bodies are called through pointers, one
+//! call a row or a run of elements: `rayon` is compiled for each type of rows, and not for each body, of which tests
+//! have hundreds.
 
 use super::ProcessRow;
 use crate::stats::FrameStats;

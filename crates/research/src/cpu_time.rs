@@ -1,6 +1,6 @@
-//! CPU time of each method on the CPU executor and of the metrics, for a picture at rest and under a moving camera:
-//! `cargo research cpu-time PICTURE.png [FRAMES]`. Set `RAYON_NUM_THREADS=1` for
-//! the time of one core.
+//! CPU time of each method on the CPU executor and of the metrics, for a picture at rest and under a moving camera.
+//!
+//! `RAYON_NUM_THREADS=1 cargo research cpu-time PICTURE.png` gives the time of one core.
 //!
 //! Makes the table "CPU executor and metrics" of `docs/performance.md`.
 

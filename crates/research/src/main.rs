@@ -8,6 +8,7 @@ mod antialias;
 mod camera_motion;
 mod cpu_time;
 mod deferred;
+mod device_time;
 mod effects;
 mod error;
 mod foreign;

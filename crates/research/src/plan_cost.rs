@@ -7,12 +7,13 @@
 //!
 //! Makes figures of `docs/quads.md`; a minute.
 
+use crate::device_time::timed_ms;
 use crate::error::AnyError;
 use afterimage::Gaze;
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::internal::{ContextDesc, Foveation, Method, Settings, Smr, ViewFrame};
-use afterimage::wgpu::{CommandEncoder, TextureFormat, TextureUsages};
-use afterimage_lab::clock::{Quartiles, Stopwatch};
+use afterimage::wgpu::{TextureFormat, TextureUsages};
+use afterimage_lab::clock::Quartiles;
 use afterimage_lab::device::Headless;
 use afterimage_lab::source::FrameSource;
 use afterimage_lab::source::analytic::AnalyticSource;
@@ -63,25 +64,12 @@ fn times(gpu: &Headless, scene: &str, antialias: bool) -> Result<[f64; 2], AnyEr
         // Uploads are done before the first watch starts.
         gpu.queue.submit([]);
         gpu.wait();
-        let plan = timed(gpu, |encoder| post.plan(&gpu.device, encoder, &frame))?;
-        let record = timed(gpu, |encoder| post.record(&gpu.device, encoder, &frame, &output).map(|_| ()))?;
+        let plan = timed_ms(gpu, |encoder| post.plan(&gpu.device, encoder, &frame))?;
+        let record = timed_ms(gpu, |encoder| post.record(&gpu.device, encoder, &frame, &output).map(|_| ()))?;
         if index >= WARM_UP {
             times[0].push(plan);
             times[1].push(record);
         }
     }
     Ok(times.map(|times| Quartiles::of(&times).map_or(f64::NAN, |q| q.median)))
-}
-
-/// Milliseconds until the device has done what `record` records.
-fn timed(
-    gpu: &Headless,
-    record: impl FnOnce(&mut CommandEncoder) -> Result<(), afterimage::FrameError>,
-) -> Result<f64, AnyError> {
-    let watch = Stopwatch::start();
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    record(&mut encoder)?;
-    gpu.queue.submit([encoder.finish()]);
-    gpu.wait();
-    Ok(watch.cpu_ms().filter(|_| gpu.is_software()).unwrap_or_else(|| watch.wall_ms()))
 }

@@ -5,8 +5,6 @@
 //!
 //! `cargo research quads SCENE`
 //!
-//! `--rows shares` compares a share that changes in every frame with a constant one.
-//!
 //! Makes the table of `docs/quads.md`; half a minute a clip of 320x180, ten minutes for Sponza.
 
 use crate::error::AnyError;

@@ -10,12 +10,13 @@
 //!
 //! Makes figures of `docs/equal-time.md`, "Headset"; minutes.
 
+use crate::device_time::timed_ms;
 use crate::error::AnyError;
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::internal::{ContextDesc, Foveation, Method, MethodKind, Settings, Smr, ViewFrame};
-use afterimage::wgpu::{self, CommandEncoder, Texture, TextureFormat, TextureUsages};
+use afterimage::wgpu::{CommandEncoder, Texture, TextureFormat, TextureUsages};
 use afterimage::{FrameError, Gaze};
-use afterimage_lab::clock::{Quartiles, Stopwatch};
+use afterimage_lab::clock::Quartiles;
 use afterimage_lab::device::Headless;
 use afterimage_lab::source::FrameSource;
 use afterimage_lab::source::analytic::AnalyticSource;
@@ -79,13 +80,13 @@ fn compare(gpu: &Headless, method: Method, size: [u32; 2]) -> Result<(), AnyErro
         gpu.queue.submit([]);
         gpu.wait();
         let mut together = |ms: &mut Vec<f64>| {
-            ms.push(timed(gpu, |encoder| record(gpu, &mut both, encoder, &of_both, &views, index))?);
+            ms.push(timed_ms(gpu, |encoder| record(gpu, &mut both, encoder, &of_both, &views, index))?);
             Ok::<_, AnyError>(())
         };
         if index % 2 == 0 {
             together(&mut together_ms)?;
         }
-        one_by_one_ms.push(timed(gpu, |encoder| {
+        one_by_one_ms.push(timed_ms(gpu, |encoder| {
             for (eye, post) in alone.iter_mut().enumerate() {
                 record(gpu, post, encoder, &of_one[eye], &views[eye..=eye], index)?;
             }
@@ -131,17 +132,4 @@ fn record(
     let frame = Frame { depth, motion, ..Frame::new(&images.color, views, index) };
     post.plan(&gpu.device, encoder, &frame)?;
     post.record(&gpu.device, encoder, &frame, &images.output).map(|_| ())
-}
-
-/// Milliseconds until the device has done what `record` records.
-fn timed(
-    gpu: &Headless,
-    record: impl FnOnce(&mut wgpu::CommandEncoder) -> Result<(), FrameError>,
-) -> Result<f64, AnyError> {
-    let watch = Stopwatch::start();
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    record(&mut encoder)?;
-    gpu.queue.submit([encoder.finish()]);
-    gpu.wait();
-    Ok(watch.cpu_ms().filter(|_| gpu.is_software()).unwrap_or_else(|| watch.wall_ms()))
 }

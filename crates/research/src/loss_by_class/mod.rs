@@ -8,8 +8,6 @@
 //!
 //! `cargo research loss-by-class SCENE`
 //!
-//! `--out`: pictures of the last frame. `--explain`: notes of its N worst pixels within one pixel of a silhouette.
-//!
 //! Makes the table of `docs/notes.md`; one to three minutes a clip of 320x180.
 
 mod classes;
