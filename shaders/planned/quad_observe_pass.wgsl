@@ -3,7 +3,8 @@
 //#use quad_plan
 //#use quad_samples
 // Comparison of shaded quads with history. CPU twin: `observe_quads` in src/cpu/planned/quad_samples.rs. One
-// invocation a pixel of a shaded quad; quads of the fovea are not compared.
+// invocation a pixel of a shaded quad, or, where single pixels are shaded, one a quad: three of four pixels would have
+// nothing to do, and keep their vector busy. Quads of the fovea are not compared.
 //
 // With ANTIALIAS 29 reads and 1 write a sample: color, 9 of depth, 3 of motion, trust, 10 stored samples, list and
 // mask; 8 bytes written.
@@ -51,14 +52,28 @@ fn observe(px: vec2u, view: u32) -> vec2u {
     return pack_observation(Observation(vec3f(0.0), history.color, error, confidence, compared.deviation));
 }
 
+fn store(px: vec2u, view: u32, observation: vec2u) {
+    if all(px < frame.size) {
+        textureStore(observed_out, px, view, vec4u(observation, 0u, 0u));
+    }
+}
+
 @compute @workgroup_size(64, 1)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) invocation: u32) {
     let view = frame.first_view;
     let i = invocation_of(group, invocation);
-    if i < 4u * quad_count() {
-        let px = px_of_quad(listed_quad(i >> 2u), i & 3u);
-        if all(px < frame.size) {
-            textureStore(observed_out, px, view, vec4u(observe(px, view), 0u, 0u));
-        }
+    let is_single = frame.single_pixels != 0u;
+    let listed = i >> select(2u, 0u, is_single);
+    if listed >= quad_count() {
+        return;
+    }
+    let quad = listed_quad(listed);
+    let shaded = textureLoad(quad_mask, quad, view, 0).x & 15u;
+    for (var left = select(0u, 15u & ~shaded, is_single); left != 0u; left &= left - 1u) {
+        store(px_of_quad(quad, firstTrailingBit(left)), view, pack_observation(no_observation()));
+    }
+    for (var left = select(1u << (i & 3u), shaded, is_single); left != 0u; left &= left - 1u) {
+        let px = px_of_quad(quad, firstTrailingBit(left));
+        store(px, view, observe(px, view));
     }
 }

@@ -43,8 +43,9 @@ impl Passes for QuadSamplePasses {
         let next = &job.history.split().1.planes[0];
         let observed = [(Binding::Write, &next.levels[0])];
         let rectify = [(Binding::Read, &next.whole), (Binding::Write, &self.rectified.whole)];
+        let observe_groups = if job.desc.settings.foveation.single_pixels { QUAD_GROUPS } else { PIXEL_GROUPS };
         for (shader, views, arguments) in
-            [(&self.observe, &observed[..], PIXEL_GROUPS), (&self.rectify, &rectify[..], QUAD_GROUPS)]
+            [(&self.observe, &observed[..], observe_groups), (&self.rectify, &rectify[..], QUAD_GROUPS)]
         {
             for (i, view) in (0..).zip(&quads.views) {
                 let mut own = vec![(Binding::List, (&view.list).into())];

@@ -224,7 +224,8 @@ fn wrong_single_pixels_are_caught() {
         ("select(frame.pattern_px.zw, frame.pattern_px.xy,", "select(frame.pattern_px.xy, frame.pattern_px.zw,"),
         ("let quadrant = quadrant_of(offset.x, offset.y);", "let quadrant = 0u;"),
         ("return nearest_px(mask, quad, px);", "return 2u * quad;"),
-        ("level == 0u || !is_shaded(mask_word, px)", "level == 0u"),
+        ("15u & ~shaded", "0u"),
+        ("select(1u << (i & 3u), shaded, is_single)", "1u << (i & 3u)"),
         ("select(4u, 5u, is_own)", "4u"),
     ];
     rig::all_caught_in(PASSES, desc(), settings, FRAMES, &planted, |index, rig| {
@@ -241,6 +242,7 @@ fn wrong_masks_are_caught() {
         ("select(all_bits & inside_bits, WHOLE, all_bits == WHOLE)", "all_bits"),
         ("let at = texel_of(min(px, frame.size - 1u), view, MASK_IN);", "let at = min(px, frame.size - 1u);"),
         ("key_word(0u, IN_PERIPHERY,", "key_word(0u, IN_MIDDLE,"),
+        ("level == 0u || !is_shaded(mask_word, px)", "level == 0u"),
     ];
     rig::all_caught_in(PASSES, desc(), settings, EACH * KINDS, &planted, |index, rig| {
         (reset_of(index, rig), with_own(index, &settings).to_vec())
