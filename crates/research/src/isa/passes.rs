@@ -199,8 +199,10 @@ fn loops(module: &str, settings: &Settings) -> &'static [&'static str] {
         "quad_mask_pass" if settings.noisy => &["run", "paths", "list"],
         "quad_mask_pass" => &["run", "no paths", "list"],
         "quad_around_pass" | "quad_octants_pass" => &["rows"],
-        "quad_observe_pass" | "quad_observe_albedo_pass" if is_antialiased(settings) => &["slope", "around"],
-        "quad_observe_pass" => &["slope", "four"],
+        "quad_observe_pass" | "quad_observe_albedo_pass" if is_antialiased(settings) => {
+            &["no pixels", "pixel", "slope", "around"]
+        }
+        "quad_observe_pass" => &["no pixels", "pixel", "slope", "four"],
         "quad_rectify_pass" if settings.noisy => &["four", "four", "quads"],
         "quad_rectify_pass" => &["four", "four", "quads", "quads relit"],
         "quad_pass" if is_antialiased(settings) => &["four", "near", "slope", "around"],

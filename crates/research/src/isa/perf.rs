@@ -19,6 +19,8 @@ fn rounds(name: &str, path: &str) -> f64 {
         ("resample", "moving" | "relit") => 3.0,
         ("relight", "relit") => 1.0,
         ("four", _) => 4.0,
+        // Shaded pixels of an invocation.
+        ("pixel", _) => 1.0,
         // Samples around a noisy one, its own included.
         ("twelve", _) => 12.0,
         // Further paths of a noisy pixel, as a mean.
@@ -36,7 +38,8 @@ fn rounds(name: &str, path: &str) -> f64 {
         ("quads relit", "relit") => 36.0,
         ("guard", "moving" | "relit") => 1.0,
         // Few pixels need the slope of the depth test, and few are at full rate.
-        ("slope" | "near" | "resample" | "relight" | "around relit" | "quads relit" | "guard" | "no paths", _) => 0.0,
+        ("slope" | "near" | "resample" | "relight" | "around relit" | "quads relit" | "guard", _) => 0.0,
+        ("no paths" | "no pixels", _) => 0.0,
         _ => panic!("no loop {name}"),
     }
 }
