@@ -3,11 +3,11 @@
 //#use quad_plan
 //#use quad_samples
 // Comparison of shaded quads with history. CPU twin: `observe_quads` in src/cpu/planned/quad_samples.rs. One
-// invocation a pixel of a shaded quad, or, where single pixels are shaded, one a quad: three of four pixels would have
-// nothing to do, and keep their vector busy. Quads of the fovea are not compared.
+// invocation a pixel of a shaded quad; where single pixels are shaded, one a quad, because three of four invocations
+// would be idle. Quads of the fovea are not compared.
 //
-// With ANTIALIAS 29 reads and 1 write a sample: color, 9 of depth, 3 of motion, trust, 10 stored samples, list and
-// mask; 8 bytes written.
+// With ANTIALIAS 30 reads and 1 write a sample: color, 9 of depth, 3 of motion, trust, 10 stored samples, list, and
+// the mask twice; 8 bytes written.
 
 @group(0) @binding(23) var observed_out: texture_storage_2d_array<rg32uint, write>;
 
@@ -52,6 +52,7 @@ fn observe(px: vec2u, view: u32) -> vec2u {
     return pack_observation(Observation(vec3f(0.0), history.color, error, confidence, compared.deviation));
 }
 
+// Writes a pixel's comparison, if the pixel is in the frame.
 fn store(px: vec2u, view: u32, observation: vec2u) {
     if all(px < frame.size) {
         textureStore(observed_out, px, view, vec4u(observation, 0u, 0u));
@@ -69,6 +70,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) in
     }
     let quad = listed_quad(listed);
     let shaded = textureLoad(quad_mask, quad, view, 0).x & 15u;
+    // `left`: a bit for each pixel of the quad that is still to do. Pixels without a sample have no comparison.
     for (var left = select(0u, 15u & ~shaded, is_single); left != 0u; left &= left - 1u) {
         store(px_of_quad(quad, firstTrailingBit(left)), view, pack_observation(no_observation()));
     }

@@ -43,6 +43,7 @@ impl Passes for QuadSamplePasses {
         let next = &job.history.split().1.planes[0];
         let observed = [(Binding::Write, &next.levels[0])];
         let rectify = [(Binding::Read, &next.whole), (Binding::Write, &self.rectified.whole)];
+        // As `frame.single_pixels` tells the shader.
         let observe_groups = if job.desc.settings.foveation.single_pixels { QUAD_GROUPS } else { PIXEL_GROUPS };
         for (shader, views, arguments) in
             [(&self.observe, &observed[..], observe_groups), (&self.rectify, &rectify[..], QUAD_GROUPS)]
