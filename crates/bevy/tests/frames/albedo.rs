@@ -5,6 +5,7 @@ use crate::common::headless::Headless;
 use crate::common::scene::{ScenePlugin, TONEMAPPING};
 use crate::deferred::{deferred, yard};
 use crate::{add_stroller, aliased, clip_psnr_db, clips, linear, read};
+use bevy::asset::AssetMut;
 use bevy::camera::{ClearColorConfig, RenderTarget, Viewport};
 use bevy::core_pipeline::prepass::DeferredPrepass;
 use bevy::material::OpaqueRendererMethod;
@@ -32,33 +33,55 @@ fn without_albedo() -> Camera {
     Camera { clear_color: ClearColorConfig::Custom(color), ..default() }
 }
 
-/// Changes the shader that writes albedos, as an error in it would.
-fn plant(headless: &mut Headless, (right, wrong): (&str, &str)) {
-    let mut shaders = headless.app.world_mut().resource_mut::<Assets<Shader>>();
+/// The shader that writes albedos.
+fn albedos_shader(headless: &mut Headless) -> AssetMut<'_, Shader> {
+    let shaders = headless.app.world_mut().resource_mut::<Assets<Shader>>().into_inner();
     let is_albedos = |shader: &Shader| shader.path.ends_with("bevy_afterimage/albedo.wesl");
     let id = shaders.iter().find(|(_, shader)| is_albedos(shader)).expect("the shader").0;
-    let mut shader = shaders.get_mut(id).expect("the shader");
+    shaders.get_mut(id).expect("the shader")
+}
+
+/// Changes the shader that writes albedos, as an error in it would; its text before.
+fn plant(headless: &mut Headless, (right, wrong): (&str, &str)) -> String {
+    let mut shader = albedos_shader(headless);
     let text = shader.source.as_str().to_owned();
     assert!(text.contains(right), "{right}");
     shader.source = Source::Wesl(text.replace(right, wrong).into());
+    text
 }
 
-/// Frames of cameras that stroll: with 16 samples of every pixel, and with `foveated`, with albedo and without.
-fn strolls<B: Bundle>(mut headless: Headless, foveated: Foveated, components: fn() -> B) -> [Vec<Vec<u8>>; 3] {
-    let full = Foveated { kind: FoveationKind::Off, ..default() };
-    let views =
-        [(true, full, Camera::default()), (false, foveated, Camera::default()), (false, foveated, without_albedo())];
-    let targets = views.map(|(is_reference, foveated, camera)| {
-        let image = headless.add_target(if is_reference { SIZE * SAMPLES } else { SIZE });
-        let afterimage = Afterimage { antialias: !is_reference, ..default() };
-        let camera = (camera, deferred(), afterimage, foveated, components());
+/// What a camera shows: 16 samples of every pixel, or a share of the pixels, with albedo or without.
+#[derive(Clone, Copy, PartialEq)]
+enum Shown {
+    Reference,
+    WithAlbedo,
+    WithoutAlbedo,
+}
+
+/// Frames of cameras that stroll.
+fn strolls<const N: usize, B: Bundle>(
+    mut headless: Headless,
+    shown: [Shown; N],
+    components: fn() -> B,
+) -> [Vec<Vec<u8>>; N] {
+    let targets = shown.map(|shown| {
+        let image = headless.add_target(if shown == Shown::Reference { SIZE * SAMPLES } else { SIZE });
+        let (antialias, foveated) = match shown {
+            Shown::Reference => (false, Foveated { kind: FoveationKind::Off, ..default() }),
+            _ => (true, Foveated::uniform(SHARE)),
+        };
+        let camera = if shown == Shown::WithoutAlbedo { without_albedo() } else { Camera::default() };
+        let camera = (camera, deferred(), Afterimage { antialias, ..default() }, foveated, components());
         add_stroller(&mut headless, RenderTarget::from(image.clone()), camera);
         image
     });
-    let mut shots = clips((headless, targets), 20, 8);
-    shots[0].iter_mut().for_each(|shot| *shot = averaged(shot));
-    shots
+    let mut clips = clips((headless, targets), 20, 8);
+    let references = clips.iter_mut().zip(shown).filter(|(_, shown)| *shown == Shown::Reference);
+    references.for_each(|(clip, _)| clip.iter_mut().for_each(|shot| *shot = averaged(shot)));
+    clips
 }
+
+const ALL: [Shown; 3] = [Shown::Reference, Shown::WithAlbedo, Shown::WithoutAlbedo];
 
 /// PSNR with albedo, and without.
 fn gain(shots: &[Vec<Vec<u8>>; 3], what: &str) -> [f64; 2] {
@@ -71,14 +94,13 @@ const SHARE: f32 = 0.1;
 
 #[test]
 fn textures_are_better_with_albedo_than_without_and_with_a_wrong_one() {
-    let foveated = Foveated::uniform(SHARE);
-    let right = strolls(courtyard(), foveated, || ());
+    let right = strolls(courtyard(), ALL, || ());
     let [with, without] = gain(&right, "tone mapped");
     assert!(with > without + 0.2, "{with:.2} dB, without {without:.2} dB");
     // That of a pixel beside.
     let mut headless = courtyard();
     plant(&mut headless, ("+ vec2u(view.viewport.xy)", "+ vec2u(view.viewport.xy) + 2u"));
-    let [_, wrong, _] = strolls(headless, foveated, || ());
+    let [wrong] = strolls(headless, [Shown::WithAlbedo], || ());
     let wrong = clip_psnr_db(&wrong, &right[0]);
     println!("albedo of another pixel: {wrong:.2} dB");
     assert!(with > wrong + 0.2, "{with:.2} dB, with that of another pixel {wrong:.2} dB");
@@ -86,7 +108,7 @@ fn textures_are_better_with_albedo_than_without_and_with_a_wrong_one() {
 
 #[test]
 fn so_are_those_of_linear_frames() {
-    let [with, without] = gain(&strolls(courtyard(), Foveated::uniform(SHARE), linear), "linear");
+    let [with, without] = gain(&strolls(courtyard(), ALL, linear), "linear");
     assert!(with > without + 0.1, "{with:.2} dB, without {without:.2} dB");
 }
 
@@ -107,7 +129,7 @@ fn beside_forward_unlit_and_shining_materials_frames_are_not_worse() {
             _ => {}
         }
     }
-    let [with, without] = gain(&strolls(headless, Foveated::uniform(SHARE), || ()), "mixed");
+    let [with, without] = gain(&strolls(headless, ALL, || ()), "mixed");
     assert!(with > without - 0.05, "{with:.2} dB, without {without:.2} dB");
 }
 
@@ -209,6 +231,7 @@ fn the_albedo_is_that_of_the_material_at_every_pixel() {
 
 #[test]
 fn a_wrong_albedo_is_caught() {
+    let mut headless = squares();
     for planted in [
         ("id.xy + vec2u(view.viewport.xy)", "id.xy + vec2u(view.viewport.xy) + 1u"),
         ("id.xy + vec2u(view.viewport.xy)", "id.xy"),
@@ -222,12 +245,14 @@ fn a_wrong_albedo_is_caught() {
         ("unknown, 0.0, far == 0.0", "unknown, 0.0, false"),
         ("textureLoad(lighting, at, 0).r == BEVYS_PASS", "true"),
     ] {
-        let mut headless = squares();
-        plant(&mut headless, planted);
+        let right = plant(&mut headless, planted);
         headless.frames(2);
         let [wrong, _] = wrong_pixels(&mut headless);
         println!("{wrong} pixels: {} -> {}", planted.0, planted.1);
         assert!(wrong > 0, "{} -> {}", planted.0, planted.1);
+        albedos_shader(&mut headless).source = Source::Wesl(right.into());
+        headless.frames(2);
+        assert_eq!(wrong_pixels(&mut headless)[0], 0, "without {}", planted.1);
     }
 }
 

@@ -128,7 +128,7 @@ fn a_still_view_becomes_that_of_full_rate() {
         headless.app.world_mut().spawn((camera, deferred(), kind, effects));
         image
     });
-    headless.frames(40);
+    headless.frames(24);
     assert_eq!(headless.problems(), &[] as &[String]);
     let psnr = psnr_db(&headless.read_target(&quads), &headless.read_target(&full));
     println!("a still deferred view: {psnr:.2} dB");
@@ -185,7 +185,7 @@ fn shared(spawn: impl Fn(&mut World, RenderTarget, Foveated)) -> [Vec<u8>; 2] {
         spawn(headless.app.world_mut(), RenderTarget::from(image.clone()), foveated);
         image
     });
-    headless.frames(40);
+    headless.frames(24);
     assert_eq!(headless.problems(), &[] as &[String]);
     targets.map(|target| headless.read_target(&target))
 }
@@ -212,7 +212,7 @@ fn deferred_rendering_comes_and_goes_and_targets_change_their_size() {
             }
         }
         targets.iter().for_each(|target| headless.resize(target, size));
-        headless.frames(40);
+        headless.frames(24);
         assert_eq!(headless.problems(), &[] as &[String], "deferred {is_deferred}, {size}");
         let [full, quads] = targets.each_ref().map(|target| headless.read_target(target));
         let psnr = psnr_db(&quads, &full);

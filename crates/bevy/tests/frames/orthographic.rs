@@ -30,8 +30,8 @@ fn orthographic_cameras_are_foveated() {
         ("turning", |_, place, _| place.rotate_around(Vec3::ZERO, Quat::from_rotation_y(0.015))),
         ("moving along its axis", |_, place, _| place.translation += 0.2 * *place.forward()),
     ];
+    let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: true });
     for (name, act) in acts {
-        let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: true });
         let targets = compared().map(|(afterimage, foveated)| {
             let image = headless.add_target(SIZE);
             let view = (Camera3d::default(), Projection::from(flat(9.0)), RenderTarget::from(image.clone()), above());
@@ -60,10 +60,11 @@ fn orthographic_cameras_are_foveated() {
         headless.wait();
         headless.frames(1);
         let world = headless.app.world_mut();
-        let mut stats = world.query::<(&Foveated, &AfterimageStats)>();
+        let mut stats = world.query::<(Entity, &Foveated, &AfterimageStats)>();
+        let all: Vec<_> = stats.iter(world).map(|(camera, own, stats)| (camera, own.kind, *stats)).collect();
         // The last of them has history.
-        let all: Vec<_> = stats.iter(world).filter(|(own, _)| own.kind == FoveationKind::Quads).collect();
-        let counted = all.last().expect("a foveated camera").1;
+        let counted = all.iter().rfind(|(_, kind, _)| *kind == FoveationKind::Quads).expect("a foveated camera").2;
+        all.iter().for_each(|&(camera, ..)| world.entity_mut(camera).despawn());
         println!("{name}: without history {blind:.2} dB, with {quads:.2} dB; {counted:?}");
         assert!(quads > blind + 2.0, "{name}: without history {blind:.2} dB, with {quads:.2} dB");
         assert!(counted.shaded > 0 && counted.shaded < counted.pixels / 4, "{name}: {counted:?}");
