@@ -30,6 +30,11 @@ const STAY_SHARE: f32 = 0.5;
 const AGREED: vec2f = vec2f(0.6, 6.0);
 const AGAINST: vec2f = vec2f(0.5, 0.25);
 const RELIT_ERRORS: f32 = 0.8;
+const BLOCK_ERRORS: f32 = 0.7;
+const BLOCK_QUADS: u32 = 16u;
+const BLOCK_MAJORITY: f32 = 0.6;
+const BLOCK_LEAST: f32 = 24.0;
+const BLOCK_SHARED: f32 = 0.0625;
 
 // `error` is negative without history or without a usable sample.
 struct Observation {
@@ -142,6 +147,20 @@ fn none_around() -> ObservedAround {
     return ObservedAround(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
 }
 
+// Sums over the observations of both.
+fn add_around(a: ObservedAround, b: ObservedAround) -> ObservedAround {
+    return ObservedAround(
+        a.sampled + b.sampled,
+        a.history + b.history,
+        a.error + b.error,
+        a.deviation + b.deviation,
+        a.weight + b.weight,
+        a.squared + b.squared,
+        a.spatial + b.spatial,
+        a.known + b.known,
+    );
+}
+
 // Mean of the observations at the pixels of a quad, from their sums with weights of 1, and from the sum of their
 // confidences; none without any.
 fn mean_observation(a: ObservedAround, confidence: f32) -> Observation {
@@ -198,9 +217,34 @@ fn relight(a: ObservedAround, error: f32) -> vec3f {
     return ratios(sampled, history) * changed + (1.0 - changed);
 }
 
+// Weight of an observation in the sums for `block_gain`: its confidence, divided by its largest channel above white.
+fn block_weight(o: Observation) -> f32 {
+    let largest = max(o.sampled, o.history);
+    return o.confidence / max(max(largest.x, largest.y), max(largest.z, 1.0));
+}
+
+// Gain of the light in a block of quads, from all comparisons in it. Errors that its samples have alike do not fall
+// with their number.
+fn block_gain(a: ObservedAround, error: f32) -> vec3f {
+    var block = a;
+    block.squared += BLOCK_SHARED * (a.weight * a.weight);
+    return relight(block, error);
+}
+
 // Difference between a sample and history after a gain, in expected errors.
 fn errors_left(o: Observation, gains: vec3f) -> f32 {
     return root_difference(o.sampled, gains * o.history) / (o.error + GATE_ERROR);
+}
+
+// Vote of a sample on the gain of its block: its confidence if the gain brings history nearer to the sample, and 1.
+fn block_vote(o: Observation, gains: vec3f) -> vec2f {
+    let is_nearer = errors_left(o, gains) < errors_left(o, vec3f(1.0));
+    return vec2f(select(0.0, o.confidence, is_nearer), 1.0);
+}
+
+// Whether most samples of a block are for its gain, and whether there are enough.
+fn has_majority(votes: vec2f) -> bool {
+    return votes.y >= BLOCK_LEAST && votes.x >= votes.y * BLOCK_MAJORITY;
 }
 
 // Degree to which history fits the samples, in [0, 1], from the mean of `errors_left`.
@@ -209,8 +253,8 @@ fn fit(errors: f32, confidence: f32) -> f32 {
 }
 
 // Whether a gain is used: whether it leaves less than the errors `without` it. Both are sums of `errors_left`.
-fn gain_helps(left: f32, without: f32) -> bool {
-    return left <= without * RELIT_ERRORS;
+fn gain_helps(left: f32, without: f32, is_of_block: bool) -> bool {
+    return left <= without * select(RELIT_ERRORS, BLOCK_ERRORS, is_of_block);
 }
 
 // Degree to which history after a gain fits at a sample's own pixel, in [0, 1].

@@ -6,12 +6,13 @@
 // invocation a shaded quad; quads of the fovea are not compared.
 //
 // 112 reads and 1 write a quad: color, depth and observation of its own pixels and of the pixels of eight quads around
-// it, and its neighbours; 16 bytes written. Where light changes the reads are made twice.
+// it, and its neighbours; 16 bytes written. Where light changes the reads are made twice, or three times.
 
 override RELIGHT_ON: u32 = 1u;
 override ANTIALIAS: u32 = 0u;
 
 @group(0) @binding(21) var observed: texture_2d_array<u32>;
+@group(0) @binding(22) var block_gains: texture_2d_array<u32>;
 @group(0) @binding(23) var rectified_out: texture_storage_2d_array<rgba32uint, write>;
 
 fn observation_at(px: vec2u, view: u32) -> Observation {
@@ -109,32 +110,35 @@ fn rectify(quad: vec2u, view: u32) -> vec4u {
     }
     var r = QuadRectification(vec3f(1.0), 1.0, vec4f(1.0), own.observation.error >= 0.0, vec4f(INVALID_DISPARITY));
     if sum.weight >= 1e-6 {
-        if RELIGHT_ON != 0u {
-            var error = mean_error(sum);
-            if ANTIALIAS != 0u {
-                error = scattered_error(sum, scatter);
-            }
-            r.gains = relight(sum, error);
+        var error = mean_error(sum);
+        if ANTIALIAS != 0u {
+            error = scattered_error(sum, scatter);
         }
-        let is_relit = any(r.gains != vec3f(1.0));
-        var with_gain = 0.0;
-        for (var tap = 0u; tap < select(0u, taps, is_relit); tap++) {
-            let near = neighbour_at(tap, quad, view, own, around, least);
-            if near.spatial > 0.0 {
-                with_gain += errors_left(near.observation, r.gains) * near.weight;
+        // The gain around the quad, and that of its block.
+        var gains = relight(sum, error);
+        var left = without;
+        for (var i = 0u; i < select(0u, 2u, RELIGHT_ON != 0u); i++) {
+            let is_relit = any(gains != vec3f(1.0));
+            var with_gain = 0.0;
+            for (var tap = 0u; tap < select(0u, taps, is_relit); tap++) {
+                let near = neighbour_at(tap, quad, view, own, around, least);
+                if near.spatial > 0.0 {
+                    with_gain += errors_left(near.observation, gains) * near.weight;
+                }
             }
-        }
-        if !is_relit || !gain_helps(with_gain, without) {
-            r.gains = vec3f(1.0);
-            with_gain = without;
+            if is_relit && gain_helps(with_gain, without, i == 1u) && with_gain <= left {
+                r.gains = gains;
+                left = with_gain;
+            }
+            gains = unpack_color(textureLoad(block_gains, quad / BLOCK_QUADS, view, 0).x);
         }
         var fit_of_quad = 0.0;
         if own.observation.error >= 0.0 {
             fit_of_quad = center_fit(own.observation, vec3f(1.0));
         }
-        r.fit = fit_around(sum, with_gain, fit_by_votes(sum, votes, fit_of_quad));
+        r.fit = fit_around(sum, left, fit_by_votes(sum, votes, fit_of_quad));
         if NOISY != 0u {
-            r.fit = noisy_fit_around(sum, with_gain);
+            r.fit = noisy_fit_around(sum, left);
         }
     }
     for (var i = 0u; i < 4u; i++) {

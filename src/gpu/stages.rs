@@ -85,7 +85,7 @@ impl Stages {
 pub(super) fn memory_bytes_of(desc: &ContextDesc) -> u64 {
     let bytes = |stage| match stage {
         Stage::Fill => fill::color(desc).bytes(),
-        Stage::Quads => quad_samples::rectified(desc).bytes(),
+        Stage::Quads => quad_samples::memory_bytes(desc),
         Stage::Candidates | Stage::Method | Stage::MipChain => 0,
     };
     desc.settings.stages().into_iter().map(bytes).sum()

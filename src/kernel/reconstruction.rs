@@ -45,6 +45,16 @@ const AGREED: [f32; 2] = [0.6, 6.0];
 const AGAINST: [f32; 2] = [0.5, 0.25];
 /// Share of the errors without a gain that a gain of quads must leave at most, or it is not used.
 const RELIT_ERRORS: f32 = 0.8;
+/// The same for the gain of a block.
+const BLOCK_ERRORS: f32 = 0.7;
+/// Edge in quads of the blocks of a [`block_gain`].
+pub const BLOCK_QUADS: u32 = 16;
+/// Share of the samples of a block that its gain must bring nearer to history.
+const BLOCK_MAJORITY: f32 = 0.6;
+/// Least number of samples of a block with a gain.
+const BLOCK_LEAST: f32 = 24.0;
+/// Part of the variance of a sample's error that the samples of a block have in common, as the jitter is the same.
+const BLOCK_SHARED: f32 = 0.0625;
 /// Largest deviation of an observation, and steps in which it is stored.
 const MOST_DEVIATION: f32 = 63.75;
 const DEVIATION_STEPS: f32 = 4.0;
@@ -218,6 +228,21 @@ pub fn add_observation(a: ObservedAround, o: Observation, weight: f32, spatial: 
     }
 }
 
+/// Sums over the observations of both.
+#[inline(always)]
+pub fn add_around(a: ObservedAround, b: ObservedAround) -> ObservedAround {
+    ObservedAround {
+        sampled: a.sampled + b.sampled,
+        history: a.history + b.history,
+        error: a.error + b.error,
+        deviation: a.deviation + b.deviation,
+        weight: a.weight + b.weight,
+        squared: a.squared + b.squared,
+        spatial: a.spatial + b.spatial,
+        known: a.known + b.known,
+    }
+}
+
 /// Mean of the observations at the pixels of a quad, from their sums with weights of 1, and from the sum of their
 /// confidences; none without any.
 #[inline(always)]
@@ -285,6 +310,36 @@ pub fn relight(a: ObservedAround, error: f32) -> Vec3 {
     ratios(sampled, history) * changed + Vec3::splat(1.0 - changed)
 }
 
+/// Weight of an observation in the sums for [`block_gain`]: its confidence, divided by its largest channel above white,
+/// so that a lamp or a firefly does not stand for the block.
+#[inline(always)]
+pub fn block_weight(o: Observation) -> f32 {
+    o.confidence / o.sampled.max_element().max(o.history.max_element()).max(1.0)
+}
+
+/// Gain of the light in a block of [`BLOCK_QUADS`] quads along each axis, from all comparisons in it. On contrasted
+/// surfaces the few samples around a quad do not tell a change of light from the errors of sampling; those of a block
+/// do. Errors that its samples have alike ([`BLOCK_SHARED`]) do not fall with their number.
+#[inline]
+pub fn block_gain(a: ObservedAround, error: f32) -> Vec3 {
+    relight(ObservedAround { squared: a.squared + BLOCK_SHARED * (a.weight * a.weight), ..a }, error)
+}
+
+/// Vote of a sample on the gain of its block, for [`has_majority`]: its confidence if the gain brings history nearer to
+/// the sample, and 1.
+#[inline]
+pub fn block_vote(o: Observation, gain: Vec3) -> Vec2 {
+    let is_nearer = errors_left(o, gain) < errors_left(o, Vec3::ONE);
+    Vec2::new(if is_nearer { o.confidence } else { 0.0 }, 1.0)
+}
+
+/// Whether most samples of a block are for its gain, by the sum of their [`block_vote`]s, and whether there are enough.
+/// A lamp that changes beside a wall that does not has no majority, unless the few samples of a block all hit lamps.
+#[inline(always)]
+pub fn has_majority(votes: Vec2) -> bool {
+    votes.y >= BLOCK_LEAST && votes.x >= votes.y * BLOCK_MAJORITY
+}
+
 /// Difference between a sample and history after a gain, in expected errors.
 #[inline]
 pub fn errors_left(o: Observation, gain: Vec3) -> f32 {
@@ -293,8 +348,8 @@ pub fn errors_left(o: Observation, gain: Vec3) -> f32 {
 
 /// Whether a gain is used: whether it leaves less than the errors `without` it. Both are sums of [`errors_left`].
 #[inline(always)]
-pub fn gain_helps(left: f32, without: f32) -> bool {
-    left <= without * RELIT_ERRORS
+pub fn gain_helps(left: f32, without: f32, is_of_block: bool) -> bool {
+    left <= without * if is_of_block { BLOCK_ERRORS } else { RELIT_ERRORS }
 }
 
 /// Degree to which history after a gain fits at a sample's own pixel, in \[0, 1\]. It limits the fit of the

@@ -1,13 +1,14 @@
 //! Reconstruction of planned frames from history that keeps samples in their places. Its mathematics is in
 //! `src/kernel/{stored_sample,reconstruction}.rs`.
 //!
-//! Three loops. The first compares each sample outside the fovea with history at its pixel. The second estimates gain
-//! and fit for each shaded quad, from its own comparisons and from those of the eight quads around it. The third
-//! interpolates gain, fit and samples for each pixel, reads the stored samples around the pixel's previous position,
-//! and blends.
+//! Four loops. The first compares each sample outside the fovea with history at its pixel. The second estimates the
+//! gain of each block of quads. The third estimates gain and fit for each shaded quad, from its own comparisons, those
+//! of the eight quads around it, and the gain of its block. The fourth interpolates gain, fit and samples for each
+//! pixel, reads the stored samples around the pixel's previous position, and blends.
 
 mod albedo;
 mod antialias;
+mod block_gains;
 mod candidate;
 mod observe;
 mod pixel;
@@ -30,7 +31,7 @@ use crate::stats::FrameStats;
 use pixel::RectifiedView;
 use view::{GivenAlbedo, GivenAlpha, View};
 
-/// Runs the three loops for every view.
+/// Runs the loops for every view.
 pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
     let Pass { desc, history, frame, quads, output, mut alpha, mut traces, mut noted } = pass;
     let has_history = history.is_filled();

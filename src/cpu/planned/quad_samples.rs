@@ -28,7 +28,7 @@ pub(super) type RectifiedQuads = Vec<[u32; 4]>;
 impl View<'_> {
     /// Pixels of a quad inside the frame.
     #[inline(always)]
-    fn pixels_of(&self, [x, y]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> + use<> {
+    pub(super) fn pixels_of(&self, [x, y]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> + use<> {
         let [width, height] = self.inputs.size;
         (0..4).map(move |i| [2 * x + i % 2, 2 * y + i / 2]).filter(move |px| px[0] < width && px[1] < height)
     }
@@ -55,7 +55,7 @@ impl View<'_> {
     }
 
     #[inline(always)]
-    fn observation_px(&self, quads: &Quads, px: [u32; 2], observed: &Samples) -> Option<Observation> {
+    pub(super) fn observation_px(&self, quads: &Quads, px: [u32; 2], observed: &Samples) -> Option<Observation> {
         let words = observed[(px[1] * self.inputs.size[0] + px[0]) as usize];
         is_observed(words).then(|| unpack_observation(words, self.color_px(quads, px).0))
     }
@@ -63,13 +63,17 @@ impl View<'_> {
     /// Gain and fit around each shaded quad. Quads of the fovea are not compared.
     pub(super) fn rectify_quads(&self, quads: &Quads, observed: &Samples) -> RectifiedQuads {
         let [columns, rows] = quads.size();
+        let blocks = self.block_gains(quads, observed);
         collect(columns * rows, |i| {
             let quad = [i % columns, i / columns];
-            if quads.mask(quad) != 0 { self.rectify_quad(quads, quad, observed) } else { [0; 4] }
+            if quads.mask(quad) == 0 {
+                return [0; 4];
+            }
+            self.rectify_quad(quads, quad, observed, blocks.of_quad(quad))
         })
     }
 
-    fn rectify_quad(&self, quads: &Quads, quad: [u32; 2], observed: &Samples) -> [u32; 4] {
+    fn rectify_quad(&self, quads: &Quads, quad: [u32; 2], observed: &Samples, of_block: Vec3) -> [u32; 4] {
         // The quad's own comparison is the mean over the surface of its first compared pixel.
         let first = self.pixels_of(quad).find(|&px| self.observation_px(quads, px, observed).is_some());
         let disparity_of = |[x, y]: [u32; 2]| self.inputs.disparity(x, y);
@@ -109,7 +113,7 @@ impl View<'_> {
         let fit_of_own = |o, gain| if self.is_noisy { 1.0 } else { center_fit(o, gain) };
         let (mut gain, mut fits) = (Vec3::ONE, 1.0);
         if around.weight >= 1e-6 {
-            let (relit, left) = self.relit_around(around, near);
+            let (relit, left) = self.relit_around(around, near, of_block);
             gain = relit;
             fits = if self.is_noisy {
                 noisy_fit_around(around, left)

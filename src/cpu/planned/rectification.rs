@@ -8,13 +8,14 @@ use crate::kernel::reconstruction::{
 use glam::{Vec2, Vec3};
 
 impl View<'_> {
-    /// Gain of history around a sample, and the weighted sum of the differences that it leaves. It is used if
-    /// it [helps](gain_helps).
+    /// Gain of history around a sample, and the weighted sum of the differences that it leaves: that of the samples
+    /// around, or that of its block, whichever leaves less. One is used if it [helps](gain_helps).
     #[inline(always)]
     pub(super) fn relit_around<I: Iterator<Item = Neighbour>>(
         &self,
         around: ObservedAround,
         neighbours: impl Fn() -> I,
+        of_block: Vec3,
     ) -> (Vec3, f32) {
         let errors = |gain| neighbours().fold(0.0, |sum, (o, weight, _)| sum + errors_left(o, gain) * weight);
         let without = errors(Vec3::ONE);
@@ -22,9 +23,15 @@ impl View<'_> {
             true => scattered_error(around, neighbours().fold(0.0, |sum, (o, weight, _)| add_scatter(sum, o, weight))),
             false => mean_error(around),
         };
-        let gain = if self.relights { relight(around, error) } else { Vec3::ONE };
-        let with_gain = if gain == Vec3::ONE { without } else { errors(gain) };
-        if gain_helps(with_gain, without) { (gain, with_gain) } else { (Vec3::ONE, without) }
+        let gains = if self.relights { [relight(around, error), of_block] } else { [Vec3::ONE; 2] };
+        let mut best = (Vec3::ONE, without);
+        for (gain, is_of_block) in gains.into_iter().zip([false, true]).filter(|(gain, _)| *gain != Vec3::ONE) {
+            let left = errors(gain);
+            if gain_helps(left, without, is_of_block) && left <= best.1 {
+                best = (gain, left);
+            }
+        }
+        best
     }
 }
 

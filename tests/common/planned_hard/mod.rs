@@ -17,6 +17,7 @@ macro_rules! planned_laws {
     ($side:ident, $run_law:ident) => {
         crate::laws::laws! { $side, $run_law,
             h109_old_light_is_gone_after_two_visits: "H109", old_light;
+            h109_a_fall_of_light_shows_on_a_contrasted_floor: "H109", contrasted_floor;
             h110_lamps_change_no_wall: "H110", lamps_and_signs;
             h111_moire_is_no_change_of_light: "H111", moire;
             h112_a_still_wall_stays_sharp: "H112", still_wall;
@@ -107,7 +108,7 @@ pub fn frame(size: [u32; 2], jitter_px: [f32; 2], color: impl Fn([f32; 2]) -> [f
 }
 
 /// Random numbers of whole places.
-fn hash(x: i64, y: i64) -> f32 {
+pub fn hash(x: i64, y: i64) -> f32 {
     let mut h = (x as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ (y as u64).wrapping_mul(0xC2B2_AE3D_27D4_EB4F);
     h ^= h >> 29;
     h = h.wrapping_mul(0xBF58_476D_1CE4_E5B9);

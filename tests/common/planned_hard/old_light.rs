@@ -1,9 +1,10 @@
 //! H109: after a change of light, a pixel whose quad has been shaded shows the new light.
 
-use super::{SIZE, context, frame, jitter_px, wall};
+use super::{SIZE, context, frame, hash, jitter_px, wall};
 use crate::depth_hard::{Color, Make};
 use crate::images::{View, pixel, pixels};
 use afterimage::Image;
+use afterimage::internal::{ContextDesc, Foveation, Settings};
 use afterimage_testing::Draws;
 
 /// How light changes.
@@ -205,6 +206,39 @@ fn all_hold(make: Make<'_>, cases: &[Case]) -> Option<String> {
         0 => format!("{of} changes of light: {text}"),
         n => format!("{of} changes of light: {text}; bar missed by {n}, {most:.2} px a row at the end"),
     })
+}
+
+/// Share of a fall of light that single pixels of a contrasted floor do not show, `after` frames later. Their few
+/// samples differ from history by as much as the light does.
+fn fall_left(make: Make<'_>, after: u64, wrong: impl Fn(&mut Color, u64)) -> Option<f64> {
+    let foveation = Foveation { single_pixels: true, ..Foveation::uniform(0.065) };
+    let mut post =
+        make(ContextDesc { settings: Settings { foveation, ..Settings::screen() }, ..ContextDesc::new(SIZE) })?;
+    let tiles = |[x, y]: [f32; 2]| [0.1 + 0.9 * hash((x / 3.0).floor() as i64, (y / 3.0).floor() as i64); 3];
+    let [old, new] = [1.0, 0.45];
+    let mut shown = Image::filled(SIZE, [0.0; 3]);
+    for index in 0..=2 * SEEN + after {
+        let light = if index < 2 * SEEN { old } else { new };
+        let mut view = frame(SIZE, jitter_px(index, true), |at| tiles(at).map(|v| v * light));
+        wrong(&mut view.color, index);
+        shown = post.step(index, &view).shown;
+    }
+    let sum = |of: &dyn Fn([u32; 2]) -> f32| pixels(SIZE).map(|px| f64::from(of(px))).sum::<f64>();
+    let lit = sum(&|px| tiles(px.map(|v| v as f32))[1]);
+    Some((sum(&|px| pixel(&shown, px)[1]) / lit - f64::from(new)) / f64::from(old - new))
+}
+
+pub fn contrasted_floor(make: Make<'_>) -> Option<String> {
+    let left = fall_left(make, 4, |_, _| ())?;
+    let old = fall_left(make, 4, |color, index| {
+        if index >= 2 * SEEN {
+            color.pixels_mut().iter_mut().flatten().for_each(|v| *v /= 0.45);
+        }
+    })?;
+    assert!(old > 0.9, "the planted error is seen: {old}");
+    // 0.13 without gains of blocks.
+    assert!(left < 0.05, "{left}");
+    Some(format!("a fall of light to 0.45 on single pixels of a contrasted floor: {left:.2} of it left after 4 frames"))
 }
 
 /// Frames of old light that is still there at the end.

@@ -1,7 +1,7 @@
 //! Light on frames shaded by quads, on the device: hard cases H109 to H114.
 
 use super::run_law;
-use crate::planned_hard::old_light::old_light;
+use crate::planned_hard::old_light::{contrasted_floor, old_light};
 use crate::planned_hard::other_surfaces::lamps_and_signs;
 use crate::planned_hard::sliding::sliding;
 use crate::planned_hard::still::{moire, still_wall};

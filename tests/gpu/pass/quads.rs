@@ -162,6 +162,7 @@ fn a_wrong_pass_is_caught() {
         "quad_around_pass",
         "quad_octants_pass",
         "quad_observe_pass",
+        "quad_blocks_pass",
         "quad_rectify_pass",
         "quad_pass",
     ];
@@ -173,6 +174,8 @@ fn a_wrong_pass_is_caught() {
         ("source.previous.at -= frame.views[view].jitter_px;", ""),
         (".usable && !surface.is_silhouette;", ".usable;"),
         ("select(own, farthest_disparity, thin)", "own"),
+        ("quad / BLOCK_QUADS", "quad / (2u * BLOCK_QUADS)"),
+        ("4u * (invocation & 3u)", "4u * (invocation & 1u)"),
         ("candidate.fit = min(mean.fit, own_fit);", "candidate.fit = mean.fit;"),
         ("sampled.usable && is_shaded(mask_at(at, view), at)", "sampled.usable"),
     ];

@@ -66,6 +66,8 @@ const PLANTED: &[(&str, &str, &str)] = &[
         "(sqrt(a.squared) * inverse)) * RELIGHT_ERRORS",
         "(sqrt(a.weight) * inverse)) * RELIGHT_ERRORS",
     ),
+    ("reconstruction::block_gain", "BLOCK_SHARED * (a.weight * a.weight)", "BLOCK_SHARED * a.weight"),
+    ("reconstruction::block_vote", "is_nearer), 1.0", "is_nearer), o.confidence"),
     ("reconstruction::mean_fit", "sqrt(a.squared) * inverse)) * MEAN_ERRORS", "inverse)) * MEAN_ERRORS"),
     ("reconstruction::reconstruct", "share >= KEEP_SHARE && near", "share >= KEEP_SHARE"),
     ("reconstruction::accumulate", "near && share >= STAY_SHARE", "share >= STAY_SHARE"),

@@ -261,7 +261,22 @@ pub const PROBES: &[Probe] = &[
         push_observation(d, row);
         row.push(range(d, 0.0, 1.0));
     })),
-    probe!(reconstruction::gain_helps, |rows| rows.each(&[F(0.0, 60.0), F(0.0, 60.0)])),
+    probe!(reconstruction::gain_helps, |rows| rows.each(&[F(0.0, 60.0), F(0.0, 60.0), N(2)])),
+    probe!(reconstruction::add_around, |rows| rows.each(&[Of(push_light), Of(push_light)])),
+    probe!(reconstruction::block_weight, |rows| rows.each(&[Of(push_observation)])),
+    probe!(
+        reconstruction::block_gain,
+        |l: reconstruction::ObservedAround| reconstruction::block_gain(l, reconstruction::mean_error(l)),
+        "let l = $0; block_gain(l, mean_error(l))",
+        |rows| rows.random(push_light)
+    ),
+    probe!(reconstruction::block_vote, |rows| rows.each(&[
+        Of(push_observation),
+        F(0.2, 5.0),
+        F(0.2, 5.0),
+        F(0.2, 5.0)
+    ])),
+    probe!(reconstruction::has_majority, |rows| rows.each(&[F(0.0, 60.0), F(0.0, 60.0)])),
     probe!(reconstruction::noisy_fit_around, |rows| rows.each(&[Of(push_light), F(0.0, 60.0)])),
     probe!(antialias::add_scatter, |rows| rows.each(&[F(0.0, 1000.0), Of(push_observation), F(0.0, 4.0)])),
     probe!(stored_sample::has_moved, |rows| rows.each(&[F(-0.1, 0.1), F(-0.1, 0.1), F(-0.1, 0.1), F(-0.1, 0.1)])),

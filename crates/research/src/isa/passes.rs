@@ -143,8 +143,8 @@ fn texture([width, height]: [u32; 2], format: TextureFormat) -> TextureDescripto
 fn pixels(module: &str) -> f64 {
     match module {
         "smr_pass" | "quad_around_pass" | "quad_octants_pass" | "quad_rectify_pass" => 4.0,
-        // A block of 2x2 quads.
-        "quad_key_pass" => 16.0,
+        // Four quads.
+        "quad_key_pass" | "quad_blocks_pass" => 16.0,
         // A run of quads.
         "quad_mask_pass" => 4.0 * f64::from(RUN_QUADS),
         _ => 1.0,
@@ -203,8 +203,9 @@ fn loops(module: &str, settings: &Settings) -> &'static [&'static str] {
             &["no pixels", "pixel", "slope", "around"]
         }
         "quad_observe_pass" => &["no pixels", "pixel", "slope", "four"],
+        "quad_blocks_pass" => &["four", "four", "runs"],
         "quad_rectify_pass" if settings.noisy => &["four", "four", "quads"],
-        "quad_rectify_pass" => &["four", "four", "quads", "quads relit"],
+        "quad_rectify_pass" => &["four", "four", "quads", "gains", "quads relit"],
         "quad_pass" if is_antialiased(settings) => &["four", "near", "slope", "around"],
         // The loop over the albedos beside a pixel is unrolled.
         "quad_albedo_pass" => &["four", "near", "slope", "around"],

@@ -35,6 +35,8 @@ fn rounds(name: &str, path: &str) -> f64 {
         // Rows until none has nearer quads, above and below, as a mean over the periphery of default quads.
         ("rows", _) => 5.0,
         ("quads", _) => 36.0,
+        // That of the samples around, and that of the block.
+        ("gains", _) => 2.0,
         ("quads relit", "relit") => 36.0,
         ("guard", "moving" | "relit") => 1.0,
         // Few pixels need the slope of the depth test, and few are at full rate.
