@@ -69,7 +69,7 @@ fn sum_of_block() -> BlockSum {
 }
 
 fn gain_of(sum: BlockSum) -> vec3f {
-    if RELIGHT_ON == 0u || sum.around.weight < 1e-6 {
+    if sum.around.weight < 1e-6 {
         return vec3f(1.0);
     }
     var error = mean_error(sum.around);
@@ -79,10 +79,8 @@ fn gain_of(sum: BlockSum) -> vec3f {
     return block_gain(sum.around, error);
 }
 
-@compute @workgroup_size(64, 1)
-fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) invocation: u32) {
-    let view = frame.first_view + group.z;
-    let first = BLOCK_QUADS * group.xy + vec2u(4u * (invocation & 3u), invocation >> 2u);
+// Gain of a block, in invocation 0.
+fn gain_of_block(first: vec2u, view: u32, invocation: u32) -> vec3f {
     runs[invocation] = sum_of_run(first, view, has_history(), false, vec3f(1.0));
     workgroupBarrier();
     if invocation == 0u {
@@ -92,8 +90,21 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) in
     let gains = block_gains;
     runs[invocation] = sum_of_run(first, view, any(gains != vec3f(1.0)), true, gains);
     workgroupBarrier();
+    if invocation == 0u && any(gains != vec3f(1.0)) && has_majority(sum_of_block().votes) {
+        return gains;
+    }
+    return vec3f(1.0);
+}
+
+@compute @workgroup_size(64, 1)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) invocation: u32) {
+    let view = frame.first_view + group.z;
+    var gains = vec3f(1.0);
+    if RELIGHT_ON != 0u {
+        let first = BLOCK_QUADS * group.xy + vec2u(4u * (invocation & 3u), invocation >> 2u);
+        gains = gain_of_block(first, view, invocation);
+    }
     if invocation == 0u {
-        let shown = select(vec3f(1.0), gains, has_majority(sum_of_block().votes));
-        textureStore(block_gains_out, group.xy, view, vec4u(pack_color(shown), 0u, 0u, 0u));
+        textureStore(block_gains_out, group.xy, view, vec4u(pack_color(gains), 0u, 0u, 0u));
     }
 }

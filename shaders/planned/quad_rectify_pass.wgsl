@@ -117,7 +117,7 @@ fn rectify(quad: vec2u, view: u32) -> vec4u {
         // The gain around the quad, and that of its block.
         var gains = relight(sum, error);
         var left = without;
-        for (var i = 0u; i < select(0u, 2u, RELIGHT_ON != 0u); i++) {
+        for (var i = 0u; RELIGHT_ON != 0u && i < 2u; i++) {
             let is_relit = any(gains != vec3f(1.0));
             var with_gain = 0.0;
             for (var tap = 0u; tap < select(0u, taps, is_relit); tap++) {

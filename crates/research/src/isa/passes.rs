@@ -203,7 +203,8 @@ fn loops(module: &str, settings: &Settings) -> &'static [&'static str] {
             &["no pixels", "pixel", "slope", "around"]
         }
         "quad_observe_pass" => &["no pixels", "pixel", "slope", "four"],
-        "quad_blocks_pass" => &["four", "four", "runs"],
+        "quad_blocks_pass" if settings.noisy => &[],
+        "quad_blocks_pass" => &["four", "four", "runs", "four relit", "four relit", "runs relit"],
         "quad_rectify_pass" if settings.noisy => &["four", "four", "quads"],
         "quad_rectify_pass" => &["four", "four", "quads", "gains", "quads relit"],
         "quad_pass" if is_antialiased(settings) => &["four", "near", "slope", "around"],

@@ -18,7 +18,7 @@ fn rounds(name: &str, path: &str) -> f64 {
         // Of four taps of Catmull-Rom's twelve.
         ("resample", "moving" | "relit") => 3.0,
         ("relight", "relit") => 1.0,
-        ("four", _) => 4.0,
+        ("four", _) | ("four relit", "relit") => 4.0,
         // Shaded pixels of an invocation.
         ("pixel", _) => 1.0,
         // Samples around a noisy one, its own included.
@@ -28,7 +28,7 @@ fn rounds(name: &str, path: &str) -> f64 {
         ("around relit", "relit") => 9.0,
         // Of plans: keys of an invocation, and sums of all invocations.
         ("keys", _) => 256.0,
-        ("runs", _) => 64.0,
+        ("runs", _) | ("runs relit", "relit") => 64.0,
         // Quads of a run and beside it.
         ("run", _) => 32.0,
         ("list", _) => 2.0,
@@ -40,7 +40,11 @@ fn rounds(name: &str, path: &str) -> f64 {
         ("quads relit", "relit") => 36.0,
         ("guard", "moving" | "relit") => 1.0,
         // Few pixels need the slope of the depth test, and few are at full rate.
-        ("slope" | "near" | "resample" | "relight" | "around relit" | "quads relit" | "guard", _) => 0.0,
+        (
+            "slope" | "near" | "resample" | "relight" | "around relit" | "quads relit" | "four relit" | "runs relit"
+            | "guard",
+            _,
+        ) => 0.0,
         ("no paths" | "no pixels", _) => 0.0,
         _ => panic!("no loop {name}"),
     }
