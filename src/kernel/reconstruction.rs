@@ -319,7 +319,7 @@ pub fn block_weight(o: Observation) -> f32 {
 
 /// Gain of the light in a block of [`BLOCK_QUADS`] quads along each axis, from all comparisons in it. On contrasted
 /// surfaces the few samples around a quad do not tell a change of light from the errors of sampling; those of a block
-/// do. Errors that its samples have alike ([`BLOCK_SHARED`]) do not fall with their number.
+/// do. Errors that its samples have alike (`BLOCK_SHARED`) do not fall with their number.
 #[inline]
 pub fn block_gain(a: ObservedAround, error: f32) -> Vec3 {
     relight(ObservedAround { squared: a.squared + BLOCK_SHARED * (a.weight * a.weight), ..a }, error)
