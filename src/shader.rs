@@ -52,10 +52,10 @@ pub static MODULES: &[Module] = modules! {
         "reproject", "resample", "reservoir", "resize", "rng", "sanitize", "smr", "stored_reservoir", "stored_sample",
         "surface", "taa", "taau", "wrs";
     "planned":
-        "no_albedo", "quad_albedo_pass", "quad_around_pass", "quad_blocks_pass", "quad_given_pass", "quad_key_pass", "quad_list",
-        "quad_mask_pass", "quad_observe_albedo_pass", "quad_observe_pass", "quad_octants_pass", "quad_pass", "quad_plan",
-        "quad_prime_pass", "quad_rectify_pass", "quad_runs", "quad_state", "quad_threshold_pass", "resize_sparse_pass",
-        "sparse_albedo", "sparse_history", "sparse_noise", "sparse_pixel";
+        "no_albedo", "quad_albedo_pass", "quad_around_pass", "quad_blocks_pass", "quad_given_pass", "quad_key_pass",
+        "quad_list", "quad_mask_pass", "quad_observe_albedo_pass", "quad_observe_pass", "quad_octants_pass",
+        "quad_pass", "quad_plan", "quad_prime_pass", "quad_rectify_pass", "quad_runs", "quad_state",
+        "quad_threshold_pass", "resize_sparse_pass", "sparse_albedo", "sparse_history", "sparse_noise", "sparse_pixel";
     "shared":
         "doctor_pass", "doctor_roots_pass", "each_pixel", "inputs", "origin", "output", "output_and_view", "past_frame",
         "previous", "quad_samples", "resize_uniforms", "view_uniforms";

@@ -5,7 +5,7 @@
 // workgroup a block, one invocation for four of its quads in a row; z is the view.
 //
 // A read a quad, and 8 to 12 a shaded one: comparisons of its pixels and their colors, where quads are shaded in part
-// also the mask; 4 bytes written a block.
+// also the mask; 4 bytes written a block. Where light changes the reads are made twice.
 
 override RELIGHT_ON: u32 = 1u;
 override ANTIALIAS: u32 = 0u;
@@ -68,6 +68,7 @@ fn sum_of_block() -> BlockSum {
     return sum;
 }
 
+// Gain that the sums of a block show.
 fn gain_of(sum: BlockSum) -> vec3f {
     if sum.around.weight < 1e-6 {
         return vec3f(1.0);

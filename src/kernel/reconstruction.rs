@@ -49,7 +49,7 @@ const RELIT_ERRORS: f32 = 0.8;
 const BLOCK_ERRORS: f32 = 0.7;
 /// Edge in quads of the blocks of a [`block_gain`].
 pub const BLOCK_QUADS: u32 = 16;
-/// Share of the samples of a block that its gain must bring nearer to history.
+/// Share of the samples of a block, by confidence, to which its gain must bring history nearer.
 const BLOCK_MAJORITY: f32 = 0.6;
 /// Least number of samples of a block with a gain.
 const BLOCK_LEAST: f32 = 24.0;
@@ -347,6 +347,7 @@ pub fn errors_left(o: Observation, gain: Vec3) -> f32 {
 }
 
 /// Whether a gain is used: whether it leaves less than the errors `without` it. Both are sums of [`errors_left`].
+/// `is_of_block`: a [`block_gain`] must leave less than the gain around a quad.
 #[inline(always)]
 pub fn gain_helps(left: f32, without: f32, is_of_block: bool) -> bool {
     left <= without * if is_of_block { BLOCK_ERRORS } else { RELIT_ERRORS }

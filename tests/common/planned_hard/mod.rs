@@ -17,7 +17,7 @@ macro_rules! planned_laws {
     ($side:ident, $run_law:ident) => {
         crate::laws::laws! { $side, $run_law,
             h109_old_light_is_gone_after_two_visits: "H109", old_light;
-            h109_a_fall_of_light_shows_on_a_contrasted_floor: "H109", contrasted_floor;
+            h109_single_pixels_show_a_fall_of_light_on_a_contrasted_floor: "H109", contrasted_floor;
             h110_lamps_change_no_wall: "H110", lamps_and_signs;
             h111_moire_is_no_change_of_light: "H111", moire;
             h112_a_still_wall_stays_sharp: "H112", still_wall;
